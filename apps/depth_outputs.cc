@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/cloud_settings.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/depth_io.h"
@@ -51,31 +52,6 @@ void add_depth_output_settings(Settings& settings, DepthOutputs& outputs) {
       "of the left camera");
   settings.path("mesh", outputs.mesh, "FILE.ply",
                 "Write the points as a surface of triangles, cut where the disparity jumps");
-}
-
-void add_cloud_settings(Settings& settings, CloudOptions& options) {
-  settings.number("max-depth", options.max_depth, "METRES",
-                  "Depths beyond are unknown; auto: no limit, 65.535 in PNG");
-  settings.integer("cloud-step", options.step_px, "N",
-                   "Points of every Nth column and row, 1 to 1024");
-  settings.number("cloud-min-confidence", options.min_confidence, "C",
-                  "Points have at least this confidence, see --confidence; auto: any");
-  settings.flag("cloud-confidence", options.with_confidence,
-                "Points have a property with their confidence");
-  settings.flag("cloud-filled", options.keeps_filled,
-                "Also points of filled pixels, whose disparity is a guess");
-  settings.flag(
-      "cloud-outlines", options.keeps_outlines,
-      "Also points of pixels beside a jump of the disparity, which may mix foreground and "
-      "background");
-  settings.number("cloud-gradient-limit", options.gradient_limit_px, "PX",
-                  "Neighbours whose disparities differ by more are two surfaces");
-}
-
-void refuse_idle_cloud_options(const Settings& settings, std::string_view why) {
-  settings.refuse_idle({"cloud-step", "cloud-min-confidence", "cloud-confidence", "cloud-filled",
-                        "cloud-outlines", "cloud-gradient-limit"},
-                       why);
 }
 
 void check_depth_outputs(const DepthOutputs& outputs, const Settings& settings, FileChecks& files) {

@@ -32,13 +32,9 @@ struct DepthOutputs {
 
 /// --depth, --cloud and --mesh.
 void add_depth_output_settings(Settings& settings, DepthOutputs& outputs);
-/// Which pixels become points, and --max-depth.
-void add_cloud_settings(Settings& settings, CloudOptions& options);
 
 /// Throws UsageError for wrong fields and for options without effect. Adds the files to `files`.
 void check_depth_outputs(const DepthOutputs& outputs, const Settings& settings, FileChecks& files);
-/// Refuses options of points where there are none; `why` such as "without --cloud and --mesh".
-void refuse_idle_cloud_options(const Settings& settings, std::string_view why);
 
 /// The content of the wanted files: made before any is written.
 struct DepthFiles {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/cloud_settings.h"
 #include "engine/error.h"
 #include "engine/io/map_formats.h"
 

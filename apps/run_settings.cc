@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/depth_outputs.h"
+#include "apps/cloud_settings.h"
 #include "apps/depth_settings.h"
 #include "apps/depth_video_settings.h"
 #include "apps/frame_rate_setting.h"

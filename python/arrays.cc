@@ -12,7 +12,6 @@
 
 namespace vantage::python {
 namespace py = pybind11;
-namespace {
 
 py::array to_array(const py::object& object, const std::string& name) {
   if (py::isinstance<py::array>(object)) {
@@ -32,6 +31,8 @@ std::string shape_text(const py::array& array) {
   }
   return array.ndim() == 0 ? "no dimension" : text;
 }
+
+namespace {
 
 template <typename T>
 PixelBuffer<T> buffer_of(const py::array& array, ChannelOrder order) {
@@ -66,6 +67,27 @@ void reverse_colours(Image<T>& image) {
       std::swap(image.at(x, y, 0), image.at(x, y, 2));
     }
   }
+}
+
+/// An array of one value per pixel.
+py::array array_of_pixels(const py::object& object, const std::string& name) {
+  py::array array = to_array(object, name);
+  constexpr py::ssize_t kMaxSide = 65535;
+  if (array.ndim() != 2 || array.shape(0) < 1 || array.shape(1) < 1 || array.shape(0) > kMaxSide ||
+      array.shape(1) > kMaxSide) {
+    throw UsageError(
+        fmt::format("{}: the array has the shape {}, expected HxW", name, shape_text(array)));
+  }
+  return array;
+}
+
+/// A copy, converted to T.
+template <typename T>
+Image<T> image_of(const py::array& array) {
+  const auto values = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
+  const auto width = static_cast<int>(array.shape(1));
+  const auto height = static_cast<int>(array.shape(0));
+  return Image<T>::copy_of({values.data(), width, height, 1, static_cast<std::size_t>(width)});
 }
 
 /// `image` moves into the array.
@@ -146,6 +168,8 @@ py::array_t<T> array_over(const Image<T>& image, const py::object& owner) {
                         {row, channels * value, value}, image.row(0), owner);
 }
 template py::array_t<float> array_over(const Image<float>& image, const py::object& owner);
+template py::array_t<std::uint8_t> array_over(const Image<std::uint8_t>& image,
+                                              const py::object& owner);
 
 py::array array_of(Photograph photograph, ChannelOrder order) {
   return std::visit(
@@ -170,19 +194,27 @@ py::array_t<bool> array_of(ImageView<const std::uint8_t> mask) {
 }
 
 DisparityMap map_from(const py::object& object, const std::string& name) {
-  const py::array array = to_array(object, name);
-  if (array.ndim() != 2 || array.shape(0) < 1 || array.shape(1) < 1) {
-    throw UsageError(
-        fmt::format("{}: the array has the shape {}, expected HxW", name, shape_text(array)));
-  }
+  const py::array array = array_of_pixels(object, name);
   if (!py::isinstance<py::array_t<float>>(array) && !py::isinstance<py::array_t<double>>(array)) {
     throw UsageError(fmt::format("{}: the array is of {}, expected float32", name,
                                  std::string(py::str(array.dtype()))));
   }
-  const auto values = py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(array);
-  const auto width = static_cast<int>(array.shape(1));
-  const auto height = static_cast<int>(array.shape(0));
-  return Image<float>::copy_of({values.data(), width, height, 1, static_cast<std::size_t>(width)});
+  return image_of<float>(array);
+}
+
+Mask mask_from(const py::object& object, const std::string& name) {
+  const py::array array = array_of_pixels(object, name);
+  if (!py::isinstance<py::array_t<bool>>(array) &&
+      !py::isinstance<py::array_t<std::uint8_t>>(array)) {
+    throw UsageError(fmt::format("{}: the array is of {}, expected bool or uint8", name,
+                                 std::string(py::str(array.dtype()))));
+  }
+  Mask mask = image_of<std::uint8_t>(array);
+  for (int y = 0; y < mask.height(); ++y) {
+    std::transform(mask.row(y), mask.row(y) + mask.width(), mask.row(y),
+                   [](std::uint8_t value) { return value != 0 ? 255 : 0; });
+  }
+  return mask;
 }
 
 }  // namespace vantage::python

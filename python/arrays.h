@@ -41,6 +41,13 @@ pybind11::array_t<float> array_of(Image<float> image);
 /// True where the mask is set.
 pybind11::array_t<bool> array_of(ImageView<const std::uint8_t> mask);
 
+/// `object` as an array. Throws TypeError that starts with `name` for what has none.
+pybind11::array to_array(const pybind11::object& object, const std::string& name);
+/// "480x640x3".
+std::string shape_text(const pybind11::array& array);
+
+/// An H×W array of bool or uint8, where 0 is false, as a mask. Throws UsageError.
+Mask mask_from(const pybind11::object& object, const std::string& name);
 /// An H×W array of floats (float32 or float64) as a map. Throws UsageError.
 DisparityMap map_from(const pybind11::object& object, const std::string& name);
 

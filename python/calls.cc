@@ -29,6 +29,11 @@ bool has_raised_signal() {
 
 void raise_interruption() { throw py::error_already_set(); }
 
+std::string path_of(const py::object& path) {
+  const py::object text = py::module_::import("os").attr("fspath")(path);
+  return py::module_::import("os").attr("fsdecode")(text).cast<std::string>();
+}
+
 void bind_errors(py::module_& module) {
   // Kept for as long as the interpreter lives.
   static PyObject* const error =

@@ -3,8 +3,11 @@
 #include <pybind11/pybind11.h>
 
 #include <functional>
+#include <optional>
+#include <string>
 
 #include "engine/execution.h"
+#include "engine/rectification/stereo_calibration.h"
 #include "scheduler/interruption.h"
 
 namespace vantage::python {
@@ -28,10 +31,19 @@ auto without_gil(const Work& work) {
   }
 }
 
+/// The path that an object stands for (str, bytes, pathlib.Path). Throws TypeError.
+std::string path_of(const pybind11::object& path);
+
+/// A Calibration, that of a file if it is a path, or None. Throws Error, TypeError.
+std::optional<StereoCalibration> calibration_from(const pybind11::object& object);
+
 /// Registers vantage.Error and vantage.UsageError.
 void bind_errors(pybind11::module_& module);
 void bind_files(pybind11::module_& module);
+void bind_match_result(pybind11::module_& module);
 void bind_matcher(pybind11::module_& module);
+void bind_metres(pybind11::module_& module);
+void bind_point_clouds(pybind11::module_& module);
 void bind_rectification(pybind11::module_& module);
 void bind_sequence(pybind11::module_& module);
 void bind_views(pybind11::module_& module);

@@ -1,9 +1,12 @@
 // Images and maps in files.
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
+#include <limits>
 #include <optional>
 #include <string>
 
+#include "engine/io/depth_io.h"
 #include "engine/io/preview.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
@@ -12,11 +15,6 @@
 namespace vantage::python {
 namespace py = pybind11;
 namespace {
-
-std::string path_of(const py::object& path) {
-  const py::object text = py::module_::import("os").attr("fspath")(path);
-  return py::module_::import("os").attr("fsdecode")(text).cast<std::string>();
-}
 
 ChannelOrder order_of(bool bgr) { return bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb; }
 
@@ -42,6 +40,19 @@ void write_map(const py::object& path, const py::object& disparity) {
   without_gil([&] { write_disparity(file, map.view()); });
 }
 
+void write_depths(const py::object& path, const py::object& depth) {
+  const std::string file = path_of(path);
+  DisparityMap depth_m = map_from(depth, "depth");
+  // Depths that the file cannot hold are unknown, as in what the program writes.
+  const auto largest_m = static_cast<float>(largest_depth_m(file));
+  for (int y = 0; y < depth_m.height(); ++y) {
+    std::replace_if(
+        depth_m.row(y), depth_m.row(y) + depth_m.width(), [&](float z) { return z > largest_m; },
+        std::numeric_limits<float>::quiet_NaN());
+  }
+  without_gil([&] { write_depth(file, depth_m.view()); });
+}
+
 py::array colours(const py::object& disparity, const py::object& limits) {
   const DisparityMap map = map_from(disparity, "disparity");
   PreviewRange range;
@@ -61,6 +72,7 @@ void bind_files(py::module_& module) {
   module.def("write_image", &write_image);
   module.def("read_disparity", &read_map);
   module.def("write_disparity", &write_map);
+  module.def("write_depth", &write_depths);
   module.def("colours", &colours);
 }
 

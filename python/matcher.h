@@ -1,16 +1,15 @@
 #pragma once
 
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <utility>
+#include <string>
+#include <vector>
 
 #include "apps/match_settings.h"
 #include "engine/vantage.h"
-#include "python/arrays.h"
+#include "python/match_result.h"
 
 namespace vantage::python {
 
@@ -23,47 +22,38 @@ struct MatchSetup {
 /// Takes all options of matching from keyword arguments. Throws UsageError.
 MatchSetup match_setup(pybind11::dict keywords);
 
-/// What to compute at once.
-struct Wanted {
-  bool right = false;
-  bool confidence = false;
+/// Arrays to match.
+struct ImageArguments {
+  pybind11::object left;
+  pybind11::object right;
+  pybind11::list more;            ///< of cameras on the same line
+  std::vector<double> baselines;  ///< of all but the first; empty: a pair
+  bool bgr = false;
+
+  [[nodiscard]] MatchedImages images() const;
 };
 
-/// The maps of a pair. Those that were not wanted at once are computed when they are asked for,
-/// from the arrays of the images, which must then be as they were. Thread rule: one thread at a
-/// time, as the GIL has it.
-class MatchResult {
+/// Matcher of the package.
+class Matcher {
  public:
-  MatchResult(const PairMatcher& matcher, Execution& execution, PixelArray left, PixelArray right,
-              Wanted wanted);
-  /// Of images that the result keeps: they cannot change.
-  MatchResult(const PairMatcher& matcher, Execution& execution,
-              std::pair<Photograph, Photograph> images);
+  explicit Matcher(const pybind11::dict& keywords);
 
-  pybind11::array_t<float> disparity(const pybind11::object& self) const;
-  pybind11::object disparity_y(const pybind11::object& self) const;
-  pybind11::array_t<float> right_disparity(const pybind11::object& self);
-  pybind11::array_t<bool> unmatched() const;
-  pybind11::array_t<bool> right_unmatched();
-  pybind11::array_t<float> confidence(const pybind11::object& self);
-  /// In colours, as `vantage match --preview` shows it; in RGB order.
-  pybind11::array preview() const;
-  [[nodiscard]] std::pair<int, int> disparities() const {
-    return {options_.disparities.min, options_.disparities.max};
-  }
+  [[nodiscard]] std::unique_ptr<MatchResult> compute(const ImageArguments& arguments,
+                                                     Wanted wanted) const;
+  /// (values, VolumeShape as a tuple): see volumes.cc.
+  [[nodiscard]] pybind11::tuple volume(const ImageArguments& arguments,
+                                       const pybind11::dict& keywords) const;
+  /// Option → value.
+  [[nodiscard]] pybind11::dict options();
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] int threads() const { return setup_.execution->executor().thread_count(); }
 
  private:
-  [[nodiscard]] const MatchedMap& map() const { return maps_.of(options_.reference); }
-  void compute_rest(Wanted wanted, const char* asked_for);
-  [[nodiscard]] MatchRequest request(Wanted wanted) const;
+  void check(const ImageArguments& arguments) const;
 
-  Execution& execution_;
-  MatchOptions options_;  ///< with the range that was searched
-  std::optional<std::pair<PixelArray, PixelArray>> arrays_;
-  std::optional<std::pair<Photograph, Photograph>> images_;
-  std::pair<std::uint32_t, std::uint32_t> checksums_;  ///< of arrays_
-  Wanted has_;
-  DisparityMaps maps_;
+  MatchSetup setup_;
+  PairMatcher matcher_;
+  std::optional<std::string> pair_option_;  ///< an option that is given, for pairs only
 };
 
 }  // namespace vantage::python

@@ -11,7 +11,10 @@ PYBIND11_MODULE(_vantage, module) {
   module.attr("__version__") = VANTAGE_VERSION;
   vantage::python::bind_errors(module);
   vantage::python::bind_rectification(module);
+  vantage::python::bind_point_clouds(module);
+  vantage::python::bind_match_result(module);
   vantage::python::bind_matcher(module);
+  vantage::python::bind_metres(module);
   vantage::python::bind_views(module);
   vantage::python::bind_files(module);
   vantage::python::bind_sequence(module);

@@ -70,10 +70,14 @@ SettingValue to_value(const py::handle& object) {
 SettingValue to_setting(const std::string& name, const py::handle& object) {
   try {
     const SettingValue value = to_value(object);
-    const bool is_range = name == "disparities" || name == "disparities-y";
+    const bool is_range = name == "disparities" || name == "disparities-y" || name == "volume-rows";
     if (is_range && value.is_array() && value.size() == 2 && value[0].is_number_integer() &&
         value[1].is_number_integer()) {
       return fmt::format("{}:{}", value[0].get<long long>(), value[1].get<long long>());
+    }
+    if (name == "principal-point" && value.is_array() && value.size() == 2 &&
+        value[0].is_number() && value[1].is_number()) {
+      return fmt::format("{},{}", value[0].get<double>(), value[1].get<double>());
     }
     return value;
   } catch (const UsageError& error) {

@@ -8,7 +8,8 @@
 namespace vantage::python {
 
 /// Sets settings from keyword arguments: names as on the command line with _ in place of -, values
-/// as in a TOML file; two numbers stand for a range MIN:MAX, None for what is not given. Throws
+/// as in a TOML file; two numbers stand for a range MIN:MAX or a point X,Y, None for what is not
+/// given. Throws
 /// UsageError for unknown names and for values.
 void set_options(apps::Settings& settings, const pybind11::dict& options);
 

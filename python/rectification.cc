@@ -3,10 +3,12 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/rig_scale.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
@@ -20,18 +22,59 @@ using Matrix = Eigen::Matrix3d;
 using Size = std::optional<std::pair<int, int>>;
 
 StereoCalibration make_calibration(const Matrix& left, const std::vector<double>& left_distortion,
-                                   const Matrix& right, const std::vector<double>& right_distortion,
-                                   const Matrix& rotation, const Eigen::Vector3d& translation,
-                                   const Size& image_size, bool is_rectified) {
+                                   const std::optional<Matrix>& right,
+                                   const std::vector<double>& right_distortion,
+                                   const Matrix& rotation,
+                                   const std::optional<Eigen::Vector3d>& translation,
+                                   const Size& image_size, bool is_rectified,
+                                   std::optional<double> metres_per_unit) {
+  if (metres_per_unit && !(*metres_per_unit > 0 && std::isfinite(*metres_per_unit))) {
+    throw UsageError(
+        fmt::format("metres_per_unit is {}, expected a number above 0", *metres_per_unit));
+  }
+  if (!translation) {
+    throw UsageError("T is not given, expected x_right - R x_left, such as (-0.12, 0, 0)");
+  }
   StereoCalibration calibration;
+  calibration.file = "the calibration";
+  calibration.metres_per_unit = metres_per_unit;
   calibration.left = {left, left_distortion};
-  calibration.right = {right, right_distortion};
+  calibration.right = {right.value_or(left), right_distortion};
   calibration.rotation = rotation;
-  calibration.translation = translation;
+  calibration.translation = *translation;
   if (image_size) {
     calibration.image_size = {image_size->first, image_size->second};
   }
   calibration.is_rectified = is_rectified;
+  calibration.validate();
+  return calibration;
+}
+
+/// Rectified cameras of a rig of which little is known.
+StereoCalibration make_rig(double focal_px, double baseline_metres, const Size& image_size,
+                           double doffs_px, const std::optional<std::pair<double, double>>& point) {
+  const apps::RigScale rig{
+      .focal_length_px = focal_px, .baseline_m = baseline_metres, .doffs_px = doffs_px};
+  rig.validate("");
+  if (!image_size && !point) {
+    throw UsageError(
+        "image_size and principal_point_px are not given, expected one of them: the principal "
+        "point is in the middle of the image unless it is given");
+  }
+  StereoCalibration calibration;
+  const auto [cx, cy] = point.value_or(
+      image_size ? std::pair((image_size->first - 1) / 2.0, (image_size->second - 1) / 2.0)
+                 : std::pair(0.0, 0.0));
+  calibration.left.matrix << focal_px, 0, cx, 0, focal_px, cy, 0, 0, 1;
+  calibration.right.matrix = calibration.left.matrix;
+  calibration.right.matrix(0, 2) += doffs_px;
+  calibration.translation = {-baseline_metres, 0, 0};
+  if (image_size) {
+    calibration.image_size = {image_size->first, image_size->second};
+  }
+  calibration.is_rectified = true;
+  calibration.metres_per_unit = 1;
+  calibration.file = "the calibration";
   calibration.validate();
   return calibration;
 }
@@ -109,6 +152,7 @@ RectifiedImages rectify(const Photograph& left, const Photograph& right,
     apply();
   }
   result.calibration = calibration_of(rectifier.pair());
+  result.calibration.file = rectification.calibration.file;
   result.cameras = rectification.calibration;
   result.calibration.metres_per_unit = result.cameras.metres_per_unit;
   result.calibration.has_scale = result.cameras.has_scale;
@@ -136,37 +180,104 @@ py::tuple to_rectify(const py::object& left, const py::object& right,
       py::make_tuple(result.valid.x, result.valid.y, result.valid.width, result.valid.height));
 }
 
+constexpr const char* kCalibrationText =
+    "Two cameras. K1, K2, R, T and D1, D2 as OpenCV has them: x_right = R x_left + T. K2 is "
+    "K1\nunless "
+    "given; T must be.\n\n"
+    "image_size: (width, height) of both images. rectified: whether their rows correspond.\n"
+    "metres_per_unit: length of the unit of T; None: not known. Raises Error for impossible "
+    "cameras.";
+constexpr const char* kLoadText =
+    "Reads a file of OpenCV, Middlebury or KITTI. Raises Error.\n\nalready_rectified: the images "
+    "were rectified with it: its P1 and P2, or Q, instead of M1 and M2.";
+constexpr const char* kFocalLengthText =
+    "Rectified cameras, in metres, of their focal length and distance.\n\ndoffs_px: cx of the "
+    "right "
+    "image minus cx of the left one. principal_point_px: (cx, cy) of the left\nimage; default: the "
+    "middle of image_size, (width, height). One of both must be given.";
+constexpr const char* kDepthMatrixText =
+    "Rectified cameras of OpenCV's 4x4 matrix Q, in its unit. Raises Error for another matrix.";
+
 }  // namespace
 
+std::optional<StereoCalibration> calibration_from(const py::object& object) {
+  if (object.is_none()) {
+    return std::nullopt;
+  }
+  if (py::isinstance<StereoCalibration>(object)) {
+    return object.cast<StereoCalibration>();
+  }
+  const std::string file = path_of(object);
+  return without_gil([&] { return read_stereo_calibration(file); });
+}
+
 void bind_rectification(py::module_& module) {
-  py::class_<StereoCalibration>(module, "Calibration")
+  py::class_<StereoCalibration>(module, "Calibration", kCalibrationText)
       .def(py::init(&make_calibration), py::arg("K1"), py::arg("D1") = std::vector<double>(),
-           py::arg("K2"), py::arg("D2") = std::vector<double>(),
-           py::arg("R") = Matrix(Matrix::Identity()), py::arg("T"), py::kw_only(),
-           py::arg("image_size") = Size(), py::arg("rectified") = false)
-      .def_static("load",
-                  [](const py::object& path) {
-                    const auto file =
-                        py::module_::import("os").attr("fspath")(path).cast<std::string>();
-                    return without_gil([&] { return read_stereo_calibration(file); });
-                  })
-      .def_property_readonly("K1", [](const StereoCalibration& c) { return c.left.matrix; })
-      .def_property_readonly("K2", [](const StereoCalibration& c) { return c.right.matrix; })
-      .def_property_readonly("D1", [](const StereoCalibration& c) { return c.left.distortion; })
-      .def_property_readonly("D2", [](const StereoCalibration& c) { return c.right.distortion; })
-      .def_property_readonly("R", [](const StereoCalibration& c) { return c.rotation; })
-      .def_property_readonly("T", [](const StereoCalibration& c) { return c.translation; })
-      .def_property_readonly("Q", &reprojection)
+           py::arg("K2") = std::optional<Matrix>(), py::arg("D2") = std::vector<double>(),
+           py::arg("R") = Matrix(Matrix::Identity()),
+           py::arg("T") = std::optional<Eigen::Vector3d>(), py::kw_only(),
+           py::arg("image_size") = Size(), py::arg("rectified") = false,
+           py::arg("metres_per_unit") = std::optional<double>())
+      .def_static(
+          "load",
+          [](const py::object& path, bool already_rectified) {
+            apps::RigScale rig;
+            rig.images_are_rectified = already_rectified;
+            const std::string file = path_of(path);
+            return without_gil([&] { return rig.read(file); });
+          },
+          py::arg("path"), py::kw_only(), py::arg("already_rectified") = false, kLoadText)
+      .def_static("from_focal_length", &make_rig, py::arg("focal_px"), py::arg("baseline_metres"),
+                  py::kw_only(), py::arg("image_size") = Size(), py::arg("doffs_px") = 0.0,
+                  py::arg("principal_point_px") = std::optional<std::pair<double, double>>(),
+                  kFocalLengthText)
+      .def_static(
+          "from_depth_matrix",
+          [](const Eigen::Matrix4d& q) {
+            StereoCalibration calibration = calibration_of_depth_matrix(q);
+            calibration.validate();
+            return calibration;
+          },
+          py::arg("Q"), kDepthMatrixText)
+      .def_property_readonly(
+          "K1", [](const StereoCalibration& c) { return c.left.matrix; },
+          "float64, 3x3: camera matrix of the left image.")
+      .def_property_readonly(
+          "K2", [](const StereoCalibration& c) { return c.right.matrix; },
+          "float64, 3x3: camera matrix of the right image.")
+      .def_property_readonly(
+          "D1", [](const StereoCalibration& c) { return c.left.distortion; },
+          "Distortion of the left lens, OpenCV's coefficients; [] for none.")
+      .def_property_readonly(
+          "D2", [](const StereoCalibration& c) { return c.right.distortion; },
+          "Distortion of the right lens, likewise.")
+      .def_property_readonly(
+          "R", [](const StereoCalibration& c) { return c.rotation; },
+          "float64, 3x3: x_right = R x_left + T.")
+      .def_property_readonly(
+          "T", [](const StereoCalibration& c) { return c.translation; },
+          "float64, 3: likewise, in the calibration's unit.")
+      .def_property_readonly(
+          "Q", &reprojection,
+          "float64, 4x4: OpenCV's matrix of rectified cameras; Error for others.")
       .def_property_readonly(
           "image_size",
           [](const StereoCalibration& c) {
             return c.image_size ? Size({c.image_size->width_px, c.image_size->height_px}) : Size();
-          })
-      .def_property_readonly("rectified", [](const StereoCalibration& c) { return c.is_rectified; })
-      .def_property_readonly("baseline", &StereoCalibration::baseline)
-      .def_property_readonly("doffs", &StereoCalibration::doffs_px)
-      .def_property_readonly("metres_per_unit",
-                             [](const StereoCalibration& c) { return c.metres_per_unit; })
+          },
+          "(width, height) of both images; None: not known.")
+      .def_property_readonly(
+          "rectified", [](const StereoCalibration& c) { return c.is_rectified; },
+          "Whether it is one of rectified images.")
+      .def_property_readonly("baseline", &StereoCalibration::baseline,
+                             "Distance of the cameras in the calibration's unit; 1 where they were "
+                             "estimated from images.")
+      .def_property_readonly("doffs", &StereoCalibration::doffs_px,
+                             "cx of the right image minus cx of the left one, in pixels.")
+      .def_property_readonly(
+          "metres_per_unit", [](const StereoCalibration& c) { return c.metres_per_unit; },
+          "Metres per unit of lengths; None: not known.")
       .def("__repr__", [](const StereoCalibration& c) {
         return fmt::format("<vantage.Calibration: {}, focal length {:.6g} px, baseline {:.6g}>",
                            c.is_rectified ? "rectified" : "not rectified", c.left.matrix(0, 0),

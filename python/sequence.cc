@@ -63,7 +63,8 @@ class Sequence {
     }
     images = {copy_of(pair.left), copy_of(pair.right)};
     auto result = std::make_unique<MatchResult>(
-        *matcher_, *setup_.execution, std::pair(std::move(pair.left), std::move(pair.right)));
+        *matcher_, *setup_.execution, MatchedImages(std::move(pair.left), std::move(pair.right)),
+        Wanted());
     return py::make_tuple(pair.index, pairs_->describe(pair.index),
                           array_of(std::move(images.first), ChannelOrder::kRgb),
                           array_of(std::move(images.second), ChannelOrder::kRgb),

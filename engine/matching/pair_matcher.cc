@@ -1,5 +1,6 @@
 #include "engine/matching/pair_matcher.h"
 
+#include "engine/matching/match_inputs.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/vertical_range.h"
 
@@ -33,6 +34,19 @@ MatchOptions PairMatcher::match(const Photograph& left, const Photograph& right,
                                 MatchReport* report) const {
   const auto ready = ready_for(with_found_ranges(options_, left, right, execution_));
   ready->matcher.match(left, right, request, maps, report);
+  return ready->options;
+}
+
+MatchOptions PairMatcher::match_several(const Photograph& reference,
+                                        std::span<const OtherView> others,
+                                        const MatchRequest& request, DisparityMaps& maps,
+                                        MatchReport* report) const {
+  require_different_baselines(others);
+  const Photograph& other = *others.front().photograph;
+  const bool is_left = others.front().baseline > 0;
+  const auto ready = ready_for(with_found_ranges(options_, is_left ? reference : other,
+                                                 is_left ? other : reference, execution_));
+  ready->matcher.match_several(reference, others, request, maps, report);
   return ready->options;
 }
 

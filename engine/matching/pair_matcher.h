@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
@@ -30,6 +31,12 @@ class PairMatcher {
   /// as that does, and Error where no range is found.
   MatchOptions match(const Photograph& left, const Photograph& right, const MatchRequest& request,
                      DisparityMaps& maps, MatchReport* report = nullptr) const;
+
+  /// The same for StereoMatcher::match_several(); a range is found between `reference` and the
+  /// first of `others`.
+  MatchOptions match_several(const Photograph& reference, std::span<const OtherView> others,
+                             const MatchRequest& request, DisparityMaps& maps,
+                             MatchReport* report = nullptr) const;
 
   [[nodiscard]] const MatchOptions& options() const { return options_; }
 

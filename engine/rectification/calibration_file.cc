@@ -110,25 +110,6 @@ StereoCalibration from_projections(const Matrix34& left, const Matrix34& right) 
   return calibration;
 }
 
-/// Q of cv::stereoRectify: (X, Y, Z, 1) ~ Q · (x, y, d, 1).
-StereoCalibration from_depth_matrix(const std::vector<double>& q) {
-  const double cx = -q[3];
-  const double cy = -q[7];
-  const double focal_length_px = q[11];
-  const double per_baseline = q[14];
-  if (q[0] != 1 || q[5] != 1 || !(focal_length_px > 0) || !(per_baseline > 0)) {
-    throw Error(
-        "Q is not that of cameras side by side, expected rows (1 0 0 -cx), (0 1 0 -cy), "
-        "(0 0 0 f), (0 0 1/B doffs/B)");
-  }
-  StereoCalibration calibration{.is_rectified = true};
-  calibration.left.matrix << focal_length_px, 0, cx, 0, focal_length_px, cy, 0, 0, 1;
-  calibration.right.matrix = calibration.left.matrix;
-  calibration.right.matrix(0, 2) += q[15] / per_baseline;
-  calibration.translation = {-1 / per_baseline, 0, 0};
-  return calibration;
-}
-
 /// The cameras of images that OpenCV has rectified; empty if the file does not have them.
 std::optional<StereoCalibration> from_rectified_opencv(const CalibrationFile& file) {
   std::optional<StereoCalibration> calibration;
@@ -139,7 +120,9 @@ std::optional<StereoCalibration> from_rectified_opencv(const CalibrationFile& fi
     calibration = from_projections(projection("P1"), projection("P2"));
     calibration->format = "OpenCV, P1 and P2";
   } else if (file.find({"Q"}) != nullptr) {
-    calibration = from_depth_matrix(file.values({"Q"}, 4, 4));
+    calibration =
+        calibration_of_depth_matrix(Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(
+            file.values({"Q"}, 4, 4).data()));
     calibration->format = "OpenCV, Q";
   }
   return calibration;
@@ -310,6 +293,23 @@ StereoCalibration read_calibration(const std::filesystem::path& path, CameraChoi
 
 StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
   return read_calibration(path, CameraChoice::kPhotographs);
+}
+
+StereoCalibration calibration_of_depth_matrix(const Eigen::Matrix4d& q) {
+  const double per_baseline = q(3, 2);
+  if (q(0, 0) != 1 || !(q(1, 1) > 0) || !(q(2, 3) > 0) || !(per_baseline > 0)) {
+    throw Error(
+        "Q is not that of cameras side by side, expected rows (1 0 0 -cx), (0 1 0 -cy), "
+        "(0 0 0 f), (0 0 1/B doffs/B)");
+  }
+  StereoCalibration calibration{.is_rectified = true};
+  calibration.left.matrix << q(2, 3), 0, -q(0, 3), 0, q(2, 3) / q(1, 1), -q(1, 3) / q(1, 1), 0, 0,
+      1;
+  calibration.right.matrix = calibration.left.matrix;
+  calibration.right.matrix(0, 2) += q(3, 3) / per_baseline;
+  calibration.translation = {-1 / per_baseline, 0, 0};
+  calibration.file = "Q";
+  return calibration;
 }
 
 StereoCalibration read_rectified_calibration(const std::filesystem::path& path) {

@@ -66,8 +66,14 @@ struct StereoCalibration {
 /// read. Thread rule: may be called concurrently.
 StereoCalibration read_stereo_calibration(const std::filesystem::path& path);
 
-/// The same for images that were rectified with the calibration of a file: of an OpenCV file with
-/// P1 and P2, or with Q, the cameras of the rectified images, although it has M1 and M2 too.
+/// The rectified cameras of OpenCV's matrix Q: (X, Y, Z, 1) ~ Q · (x, y, d, 1), with the rows
+/// (1 0 0 -cx), (0 a 0 -a·cy), (0 0 0 f), (0 0 1/B doffs/B); a is 1 in Q of OpenCV, else fx / fy.
+/// Throws Error for another one.
+StereoCalibration calibration_of_depth_matrix(const Eigen::Matrix4d& q);
+
+/// read_stereo_calibration() for images that were rectified with the calibration of a file: of an
+/// OpenCV file with P1 and P2, or with Q, the cameras of the rectified images, although it has M1
+/// and M2 too.
 StereoCalibration read_rectified_calibration(const std::filesystem::path& path);
 
 }  // namespace vantage

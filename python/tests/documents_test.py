@@ -1,9 +1,11 @@
-"""Every block of docs/python.md runs, in order, beside a generated pair; every block of the stubs is
-of the module."""
+"""Every block of docs/python.md runs, in order, beside a generated pair; the stubs say what is in the
+module, and all of it has a docstring."""
 
 import ast
+import inspect
 import os
 import re
+import types
 from pathlib import Path
 
 import pytest
@@ -29,21 +31,58 @@ def test_tutorial(tmp_path, monkeypatch):
     assert os.path.getsize("map.png") > 0
 
 
+def arguments_of(definition):
+    """Name, kind and whether there is a default, of each parameter of a function's syntax tree."""
+    given = definition.args
+    plain = given.posonlyargs + given.args
+    defaults = [False] * (len(plain) - len(given.defaults)) + [True] * len(given.defaults)
+    found = [(part.arg, "plain", has) for part, has in zip(plain, defaults)]
+    found += [("", "list", False)] if given.vararg else []
+    found += [(part.arg, "keyword", value is not None)
+              for part, value in zip(given.kwonlyargs, given.kw_defaults)]
+    return found + ([("", "keywords", False)] if given.kwarg else [])
+
+
+def arguments_in_force(function):
+    """The same of a function, or of a binding, which says its signature in its docstring."""
+    signature = (function.__doc__ or "").partition(" -> ")[0]
+    if isinstance(function, types.FunctionType):
+        signature = re.sub(r"<[^>]*>", "None", f"f{inspect.signature(function)}")
+    return arguments_of(ast.parse(f"def {signature}: ...").body[0])
+
+
+def is_public(name):
+    return not name.startswith("_") or name in ["__init__", "__call__", "__iter__", "__len__"]
+
+
 @pytest.mark.parametrize("module", [vantage, vantage.opencv], ids=lambda module: module.__name__)
-def test_stubs_name_what_there_is(module):
+def test_stubs_say_what_there_is(module):
     stub = ast.parse(Path(module.__file__).with_suffix(".pyi").read_text())
-    named = {}
-    for node in stub.body:
-        if isinstance(node, ast.ClassDef):
-            members = {part.name for part in node.body if isinstance(part, ast.FunctionDef)}
-            named[node.name] = members
-        elif isinstance(node, ast.FunctionDef):
-            named[node.name] = set()
-    for name in named:
-        assert hasattr(module, name)
-        public = {member for member in vars(getattr(module, name)) if not member.startswith("_")}
-        if isinstance(getattr(module, name), type) and not issubclass(getattr(module, name),
-                                                                      Exception):
-            assert public - {"compute"} <= named[name] | {"compute"}
-            assert named[name] <= {"__init__", "__call__", "__iter__", "__len__"} | public
-    assert set(getattr(module, "__all__", named)) <= set(named)
+    classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+    functions = {node.name: node for node in stub.body if isinstance(node, ast.FunctionDef)}
+    named = {*classes, *functions}
+    public = {name for name, value in vars(module).items()
+              if not name.startswith("_") and (inspect.isclass(value) or callable(value))}
+    assert named == public == set(getattr(module, "__all__", public))
+    for name, node in functions.items():
+        assert arguments_in_force(getattr(module, name)) == arguments_of(node), name
+        assert getattr(module, name).__doc__, name
+    for name, node in classes.items():
+        known = getattr(module, name)
+        assert known.__doc__, name
+        if issubclass(known, Exception):
+            continue
+        members = {part.name: part for part in node.body if isinstance(part, ast.FunctionDef)}
+        fields = {part.target.id for part in node.body if isinstance(part, ast.AnnAssign)}
+        own = {member for member in vars(known) if is_public(member)}
+        if isinstance(known.__init__, types.FunctionType):  # fields are set in it
+            own |= set(re.findall(r"self\.([a-z]\w*) =", inspect.getsource(known.__init__)))
+        own -= set() if "__init__" in members else {"__init__"}  # only the module makes them
+        assert own == {*members, *fields}, name
+        for member, part in members.items():
+            value = getattr(known, member)
+            if isinstance(value, property):
+                assert value.__doc__, (name, member)
+            elif member != "__len__":
+                assert arguments_in_force(value) == arguments_of(part), (name, member)
+                assert value.__doc__ or member.startswith("__"), (name, member)

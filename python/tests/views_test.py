@@ -133,7 +133,7 @@ def test_points(scene, truth):
                                T=calibration.T).metres_per_unit is None
     opencv = cv2.reprojectImageTo3D(truth, calibration.Q)
     assert np.allclose(vantage.reproject(truth, calibration.Q), opencv, rtol=1e-4)
-    for bad, message in [(truth.astype(int), "expected floats of HxW"), (truth[0], "HxW")]:
+    for bad, message in [(truth.astype(int), "is of int64, expected float32"), (truth[0], "HxW")]:
         with pytest.raises(ValueError, match=message):
             vantage.reproject(bad, calibration)
     with pytest.raises(vantage.Error, match="not one of rectified images"):

@@ -14,12 +14,14 @@ share one pool of threads; Ctrl-C interrupts them. docs/python.md is a tutorial.
 import numpy as _np
 
 from vantage import _vantage
-from vantage._vantage import Calibration, Error, MatchResult, UsageError, __version__
+from vantage._vantage import (Calibration, Error, MatchResult, Mesh, PointCloud, UsageError,
+                              __version__)
 
 __all__ = [
-    "Calibration", "Error", "Frame", "MatchResult", "Matcher", "RectifiedImages", "Sequence",
-    "UsageError", "colours", "read_disparity", "read_image", "rectify", "reproject", "synthesize",
-    "write_disparity", "write_image",
+    "Calibration", "Error", "Frame", "MatchResult", "Matcher", "Mesh", "PointCloud",
+    "RectifiedImages", "Sequence", "UsageError", "Volume", "cloud", "colours", "depth",
+    "depth_resolution", "mesh", "read_disparity", "read_image", "rectify", "reproject",
+    "synthesize", "write_cloud", "write_depth", "write_disparity", "write_image", "write_mesh",
 ]
 
 
@@ -41,14 +43,37 @@ class Matcher:
         self._native = _vantage.Matcher(
             {"preset": preset, "disparities": disparities, **options})
 
-    def compute(self, left, right, *, bgr=False, right_disparity=False, confidence=False):
-        """The maps of a pair of equal size, a MatchResult.
+    def compute(self, left, right, *, more=(), baselines=(), bgr=False, right_disparity=False,
+                confidence=False, posterior=False):
+        """The maps of images of equal size, a MatchResult.
+
+        left, right: arrays of uint8, uint16 or float32 (0 to 1), HxW or HxWx3.
+        more, baselines: images of more cameras on the same line, and the positions of the cameras
+        of right and of these relative to the first, positive to the right; left is then the
+        reference, and disparities are those between left and right.
+        bgr: colours are in BGR order.
 
         The map of the left image (of the right one with reference="right") is computed now; the
-        right one and the confidence when they are asked for, or now if wanted. Until then the
-        result needs the arrays as they are: it refuses arrays that have changed.
+        right one, confidence and posterior mean and variance when they are asked for, or now if
+        wanted. Until then the result needs the arrays as they are: it refuses arrays that have
+        changed. Raises UsageError for other arrays, Error for images that cannot be matched.
         """
-        return self._native.compute(left, right, bgr, right_disparity, confidence)
+        return self._native.compute(left, right, list(more), [float(b) for b in baselines], bgr,
+                                    right_disparity, confidence, posterior)
+
+    def volume(self, left, right, *, kind="aggregated", level=0, rows=None, max_bytes=None,
+               more=(), baselines=(), bgr=False):
+        """The disparity space of the map's image, a Volume, as `vantage match --volume` writes it.
+
+        kind: "costs" before aggregation, or "aggregated": what winners are selected from, with
+        bayes and the presets but realtime probabilities. level: of the coarse-to-fine search, 0 for
+        the full size. rows: (FIRST, LAST), both ends included; None: all. max_bytes: Error for a
+        larger array; default half of the machine's memory. Other arguments as of compute().
+        """
+        options = {"volume_kind": kind, "volume_level": level, "volume_rows": rows,
+                   "max_bytes": max_bytes}
+        return Volume(*self._native.volume(left, right, list(more),
+                                           [float(b) for b in baselines], bgr, options))
 
     __call__ = compute
 
@@ -64,6 +89,32 @@ class Matcher:
 
     def __repr__(self):
         return repr(self._native)
+
+
+class Volume:
+    """Costs or probabilities of the candidates of each pixel.
+
+    values: float32, HxWxD, or HxWxDyxD of a search with disparities_y; NaN where a candidate has no
+    partner or was not searched.
+    disparities: float64, D: the candidates in pixels of the full size. disparities_y: int, Dy, or
+    None.
+    content: "energies" (small: likely) or "probabilities", which sum to 1 where all candidates have
+    partners.
+    level: of the coarse-to-fine search. first_row: the row of that level that values begin with.
+    """
+
+    def __init__(self, values, disparities, step, disparities_y, content, level, first_row):
+        self.values = values
+        self.disparities = disparities[0] + step * _np.arange(values.shape[-1])
+        self.disparities_y = (
+            None if disparities_y is None else _np.arange(disparities_y[0], disparities_y[1] + 1))
+        self.content = content
+        self.level = level
+        self.first_row = first_row
+
+    def __repr__(self):
+        shape = "x".join(map(str, self.values.shape))
+        return f"<vantage.Volume: {self.content}, {shape}>"
 
 
 class RectifiedImages:
@@ -125,37 +176,70 @@ def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, 
     return arrays[0] if single else arrays
 
 
-def reproject(disparity, calibration):
-    """Points of a disparity map of the left image: float32, HxWx3, in the unit of the calibration.
+def reproject(disparity, calibration, *, reference="left", **options):
+    """Points of a disparity map: float32, HxWx3, in the unit of the calibration.
 
     X is to the right, Y down and Z ahead of the rectified left camera. NaN where the disparity is
     unknown or at infinity or beyond.
 
-    calibration: Calibration of rectified images (or the path of one), or OpenCV's 4x4 matrix Q.
+    disparity: float32 or float64, HxW. calibration: Calibration of rectified images (or the path of
+    one), or OpenCV's 4x4 matrix Q. reference: "left" or "right", the image of the map. options:
+    threads. Raises UsageError for other arrays, Error for other calibrations. MatchResult.cloud()
+    makes points in metres with their colours.
     """
-    disparity = _np.asarray(disparity)
-    if disparity.ndim != 2 or disparity.dtype.kind != "f":
-        raise UsageError(f"disparity: the array is {disparity.dtype} of shape {disparity.shape}, "
-                         "expected floats of HxW")
-    is_matrix = isinstance(calibration, (_np.ndarray, list, tuple))
-    q = (_np.asarray(calibration, dtype=float) if is_matrix
-         else _calibration_of(calibration).Q)
-    if q.shape != (4, 4):
-        raise UsageError(f"the matrix Q has shape {q.shape}, expected (4, 4)")
-    rows, columns = _np.indices(disparity.shape, dtype=_np.float64, sparse=True)
-    position = [columns, rows, disparity.astype(_np.float64), 1.0]
+    if isinstance(calibration, (_np.ndarray, list, tuple)):
+        q = _np.asarray(calibration, dtype=float)
+        if q.shape != (4, 4):
+            raise UsageError(f"the matrix Q has shape {q.shape}, expected (4, 4)")
+        calibration = Calibration.from_depth_matrix(q)
+    return _vantage.reproject(disparity, _calibration_of(calibration),
+                              {"reference": reference, **options})
 
-    def row_of(number):
-        return sum(q[number, k] * position[k] for k in range(4))
 
-    scale = row_of(3)
-    with _np.errstate(divide="ignore", invalid="ignore"):
-        depth = row_of(2) / scale
-        is_ahead = _np.isfinite(depth) & (depth > 0)
-        points = _np.empty((*disparity.shape, 3), _np.float32)
-        for axis in range(3):
-            points[..., axis] = _np.where(is_ahead, row_of(axis) / scale, _np.nan)
-    return points
+def depth(disparity, calibration=None, **options):
+    """Depths of a disparity map in metres: float32, HxW; NaN: unknown, or beyond max_depth.
+
+    disparity: float32 or float64, HxW. calibration: Calibration of rectified images (or the path of
+    one). Instead, or for one without a scale: focal_length (pixels) with baseline (metres), doffs,
+    calibration_unit ("m", "cm", "mm"). options: these, max_depth (metres), reference, threads.
+    Raises Error for a calibration without a scale. MatchResult.depth() does the same.
+    """
+    return _vantage.depth(disparity, _calibration_of(calibration), options)
+
+
+def depth_resolution(disparity, calibration=None, **options):
+    """Distance from each depth to the next one that can be told from it: float32, HxW, in metres,
+    or in the calibration's unit where its length is not known.
+
+    options: disparity_resolution, the difference of disparities that can be told apart (default 0.1
+    pixels), and those of depth() but max_depth.
+    """
+    return _vantage.depth_resolution(disparity, _calibration_of(calibration), options)
+
+
+def cloud(disparity, image, calibration=None, *, unmatched=None, confidence=None, bgr=False,
+          **options):
+    """The pixels of a disparity map as points in metres, a PointCloud, as `vantage reproject` makes
+    them. For a MatchResult use its cloud().
+
+    disparity: float32 or float64, HxW. image: the map's image, for colours. unmatched: bool or
+    uint8, HxW: filled pixels, which are left out. confidence: float32, HxW, for
+    cloud_min_confidence and cloud_confidence.
+    options: max_depth, cloud_step, cloud_min_confidence, cloud_confidence, cloud_filled,
+    cloud_outlines, cloud_gradient_limit, reference, principal_point ((cx, cy), in place of a
+    calibration), and those of depth(). Raises Error where no point is left.
+    """
+    return _vantage.cloud(disparity, image, _calibration_of(calibration), unmatched, confidence,
+                          bgr, options)
+
+
+def mesh(disparity, image, calibration=None, *, unmatched=None, confidence=None, bgr=False,
+         **options):
+    """The points as a surface of triangles, a Mesh, cut where the disparity jumps. Arguments as of
+    cloud(). For a MatchResult use its mesh().
+    """
+    return _vantage.mesh(disparity, image, _calibration_of(calibration), unmatched, confidence, bgr,
+                         options)
 
 
 class Frame:
@@ -242,6 +326,23 @@ def read_disparity(path, scale=0.0):
 def write_disparity(path, disparity):
     """Writes a disparity map; the extension is the format: .pfm .png .tiff .exr .npy."""
     _vantage.write_disparity(path, disparity)
+
+
+def write_depth(path, depth):
+    """Writes depths in metres, float32 or float64, HxW, NaN unknown; the extension is the format:
+    .png in millimetres (16 bits, 0 unknown, also beyond 65.535 m), .pfm .tiff .exr .npy in metres.
+    """
+    _vantage.write_depth(path, depth)
+
+
+def write_cloud(path, cloud):
+    """Writes a PointCloud as a binary PLY file."""
+    _vantage.write_cloud(path, cloud)
+
+
+def write_mesh(path, mesh):
+    """Writes a Mesh as a binary PLY file."""
+    _vantage.write_mesh(path, mesh)
 
 
 def colours(disparity, limits=None):

@@ -57,18 +57,24 @@ class StereoVantage:
         return disparity
 
     def getMinDisparity(self):
+        """The smallest disparity, in pixels."""
         return self._range[0]
 
     def setMinDisparity(self, minDisparity):
+        """Moves the range."""
         self._range = (int(minDisparity), self._range[1])
         self._update()
 
     def getNumDisparities(self):
+        """The number of disparities."""
         return self._range[1]
 
     def setNumDisparities(self, numDisparities):
+        """Changes it; any number of at least 1."""
         self._range = (self._range[0], int(numDisparities))
         self._update()
 
 
-StereoVantage_create = StereoVantage.create
+def StereoVantage_create(*arguments, **options):
+    """As cv2.StereoSGBM_create()."""
+    return StereoVantage(*arguments, **options)

@@ -1,0 +1,34 @@
+#include "apps/cloud_settings.h"
+
+namespace vantage::apps {
+
+void add_max_depth_setting(Settings& settings, std::optional<double>& max_depth_m) {
+  settings.number("max-depth", max_depth_m, "METRES",
+                  "Depths beyond are unknown; auto: no limit, 65.535 in PNG");
+}
+
+void add_cloud_settings(Settings& settings, CloudOptions& options) {
+  add_max_depth_setting(settings, options.max_depth);
+  settings.integer("cloud-step", options.step_px, "N",
+                   "Points of every Nth column and row, 1 to 1024");
+  settings.number("cloud-min-confidence", options.min_confidence, "C",
+                  "Points have at least this confidence, see --confidence; auto: any");
+  settings.flag("cloud-confidence", options.with_confidence,
+                "Points have a property with their confidence");
+  settings.flag("cloud-filled", options.keeps_filled,
+                "Also points of filled pixels, whose disparity is a guess");
+  settings.flag(
+      "cloud-outlines", options.keeps_outlines,
+      "Also points of pixels beside a jump of the disparity, which may mix foreground and "
+      "background");
+  settings.number("cloud-gradient-limit", options.gradient_limit_px, "PX",
+                  "Neighbours whose disparities differ by more are two surfaces");
+}
+
+void refuse_idle_cloud_options(const Settings& settings, std::string_view why) {
+  settings.refuse_idle({"cloud-step", "cloud-min-confidence", "cloud-confidence", "cloud-filled",
+                        "cloud-outlines", "cloud-gradient-limit"},
+                       why);
+}
+
+}  // namespace vantage::apps

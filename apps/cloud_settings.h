@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "apps/settings.h"
+#include "engine/reprojection/point_cloud.h"
+
+namespace vantage::apps {
+
+/// --max-depth.
+void add_max_depth_setting(Settings& settings, std::optional<double>& max_depth_m);
+/// That, and which pixels become points.
+void add_cloud_settings(Settings& settings, CloudOptions& options);
+/// Refuses options of points where there are none; `why` such as "without --cloud and --mesh".
+void refuse_idle_cloud_options(const Settings& settings, std::string_view why);
+
+}  // namespace vantage::apps

@@ -1,0 +1,286 @@
+#include "python/match_result.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <functional>
+#include <memory>
+
+#include "engine/sequence/preview_range.h"
+#include "python/arrays.h"
+#include "python/calls.h"
+
+namespace vantage::python {
+namespace py = pybind11;
+
+MatchResult::MatchResult(const PairMatcher& matcher, Execution& execution, MatchedImages images,
+                         Wanted wanted)
+    : execution_(execution), images_(std::move(images)) {
+  computed_.options = matcher.options();
+  if (wanted.other && !images_.is_pair()) {
+    throw UsageError("right_disparity cannot be had of several images: the first one has a map");
+  }
+  without_gil([&] { match(matcher, images_.read(), wanted, computed_); });
+}
+
+void MatchResult::match(const PairMatcher& matcher, const std::vector<Photograph>& photographs,
+                        Wanted wanted, ComputedMaps& computed) const {
+  const Side side = images_.side(matcher.options().reference);
+  PosteriorMoments moments;
+  const VolumeRequest posterior{.side = side, .sink = &moments};
+  MatchRequest request{.left = side == Side::kLeft || wanted.other,
+                       .right = side == Side::kRight || wanted.other,
+                       .confidence = wanted.confidence};
+  if (wanted.posterior) {
+    request.volumes = {&posterior, 1};
+  }
+  computed.options = images_.match(matcher, photographs, request, computed.maps);
+  if (wanted.posterior) {
+    computed.posterior = {moments.mean_px().copy(), moments.variance_px2().copy()};
+  }
+  computed.has = wanted;
+}
+
+void MatchResult::require(Wanted wanted, const char* asked_for) {
+  if (computed_.has.covers(wanted)) {
+    return;
+  }
+  if (computed_.is_final) {
+    throw Error(fmt::format(
+        "{} depends on more than the images of the frame, expected it in save of the Sequence",
+        asked_for));
+  }
+  const PairMatcher matcher(computed_.options, execution_);
+  ComputedMaps rest;
+  without_gil(
+      [&] { match(matcher, images_.read_again(asked_for), computed_.has.with(wanted), rest); });
+  // Another thread may have been faster meanwhile, and arrays then show its maps.
+  if (wanted.other && !computed_.has.other) {
+    const Side other = side() == Side::kLeft ? Side::kRight : Side::kLeft;
+    computed_.maps.of(other) = std::move(rest.maps.of(other));
+    computed_.has.other = true;
+  }
+  if (wanted.confidence && !computed_.has.confidence) {
+    computed_.maps.of(side()).confidence = std::move(rest.maps.of(side()).confidence);
+    computed_.has.confidence = true;
+  }
+  if (wanted.posterior && !computed_.has.posterior) {
+    computed_.posterior = std::move(rest.posterior);
+    computed_.has.posterior = true;
+  }
+}
+
+void MatchResult::require_right(const char* asked_for) {
+  if (!images_.is_pair()) {
+    throw Error(
+        fmt::format("{} cannot be had of several images: the first one has a map", asked_for));
+  }
+  require({.other = side() == Side::kLeft}, asked_for);
+}
+
+const CyclopeanMap& MatchResult::require_cyclopean(const char* asked_for) {
+  if (!images_.is_pair() || computed_.options.resolved().selection != Selection::kSymmetric) {
+    throw UsageError(
+        fmt::format("{} is asked for, expected it with selection=\"symmetric\" only", asked_for));
+  }
+  if (!computed_.cyclopean) {
+    require({.other = side() == Side::kRight}, asked_for);
+    CyclopeanMap made;
+    without_gil([&] { make_cyclopean_map(computed_.maps.left, execution_, made); });
+    if (!computed_.cyclopean) {
+      computed_.cyclopean.emplace(std::move(made));
+    }
+  }
+  return *computed_.cyclopean;
+}
+
+py::array_t<float> MatchResult::disparity(const py::object& self) const {
+  return array_over(map().disparity_px, self);
+}
+
+py::object MatchResult::disparity_y(const py::object& self) const {
+  return computed_.options.disparities_y ? py::object(array_over(map().disparity_y_px, self))
+                                         : py::none();
+}
+
+py::array_t<float> MatchResult::right_disparity(const py::object& self) {
+  require_right("right_disparity");
+  return array_over(computed_.maps.right.disparity_px, self);
+}
+
+py::array_t<bool> MatchResult::unmatched() const { return array_of(map().unmatched.view()); }
+
+py::array_t<bool> MatchResult::right_unmatched() {
+  require_right("right_disparity");
+  return array_of(std::as_const(computed_.maps.right.unmatched).view());
+}
+
+py::array_t<float> MatchResult::confidence(const py::object& self) {
+  require({.confidence = true}, "confidence");
+  return array_over(map().confidence, self);
+}
+
+py::array_t<float> MatchResult::posterior_mean(const py::object& self) {
+  require({.posterior = true}, "posterior");
+  return array_over(computed_.posterior.mean_px, self);
+}
+
+py::array_t<float> MatchResult::posterior_variance(const py::object& self) {
+  require({.posterior = true}, "posterior");
+  return array_over(computed_.posterior.variance_px2, self);
+}
+
+py::array_t<float> MatchResult::cyclopean(const py::object& self) {
+  return array_over(require_cyclopean("cyclopean").disparity_px, self);
+}
+
+py::array_t<std::uint8_t> MatchResult::cyclopean_occlusion(const py::object& self) {
+  return array_over(require_cyclopean("cyclopean_occlusion").seen_by, self);
+}
+
+py::array MatchResult::preview() const {
+  const PreviewRange range =
+      computed_.preview.value_or(preview_range_of(computed_.options.disparities));
+  return array_of({colour_preview(map().disparity_px.view(), range.min_px, range.max_px)},
+                  ChannelOrder::kRgb);
+}
+
+py::array MatchResult::depth(const std::optional<StereoCalibration>& calibration,
+                             const py::dict& keywords) const {
+  const MetricOptions options = metric_options(MetricOutput::kDepth, keywords);
+  return array_of(without_gil([&] {
+    const MetricCamera camera =
+        metric_camera(metric_map(), calibration, options, MetricOutput::kDepth);
+    return depths(metric_map(), camera, options, execution_);
+  }));
+}
+
+py::array MatchResult::depth_resolution(const std::optional<StereoCalibration>& calibration,
+                                        const py::dict& keywords) const {
+  const MetricOptions options = metric_options(MetricOutput::kDepthResolution, keywords);
+  const bool has_fractions = computed_.options.resolved().subpixel != Subpixel::kNone;
+  return array_of(without_gil([&] {
+    const MetricCamera camera =
+        metric_camera(metric_map(), calibration, options, MetricOutput::kDepthResolution);
+    return depth_resolutions(metric_map(), camera, options, has_fractions ? 0.1 : 1, execution_);
+  }));
+}
+
+template <typename Make>
+auto MatchResult::make_points(const std::optional<StereoCalibration>& calibration,
+                              const py::dict& keywords, const Make& make) {
+  const MetricOptions options = metric_options(MetricOutput::kPoints, keywords);
+  const MetricCamera camera =
+      metric_camera(metric_map(), calibration, options, MetricOutput::kPoints);
+  if (options.cloud.reads_confidence()) {
+    require({.confidence = true}, "confidence");
+  }
+  return without_gil([&] {
+    const std::vector<Photograph> photographs = images_.read_again("the colours of points");
+    const CloudSource source{.disparity_px = map().disparity_px.view(),
+                             .colours = &photographs[images_.reference(side())],
+                             .unmatched = map().unmatched.view(),
+                             .confidence = map().confidence.view(),
+                             .camera = camera.camera};
+    return make(source, options.cloud, execution_, camera.frame);
+  });
+}
+
+FramedCloud MatchResult::cloud(const std::optional<StereoCalibration>& calibration,
+                               const py::dict& keywords) {
+  return make_points(calibration, keywords, make_cloud);
+}
+
+FramedMesh MatchResult::mesh(const std::optional<StereoCalibration>& calibration,
+                             const py::dict& keywords) {
+  return make_points(calibration, keywords, make_mesh);
+}
+
+namespace {
+
+/// A getter whose arrays keep the result alive.
+template <typename Get>
+auto with_owner(const Get& get) {
+  return
+      [get](const py::object& self) { return std::invoke(get, self.cast<MatchResult&>(), self); };
+}
+
+/// `method` with a calibration, or the path of one, and options as keyword arguments.
+template <typename Method>
+auto with_options(const Method& method) {
+  return [method](MatchResult& self, const py::object& calibration, const py::kwargs& keywords) {
+    return std::invoke(method, self, calibration_from(calibration), keywords);
+  };
+}
+
+constexpr const char* kCameraOptions =
+    "calibration: Calibration of the images (or the path of one), which are rectified. Instead, or "
+    "for\none without a scale: focal_length (pixels) with baseline (metres), doffs, "
+    "principal_point,\ncalibration_unit, as `vantage match` has them. Frames of a Sequence know "
+    "theirs.\n";
+
+}  // namespace
+
+void bind_match_result(py::module_& module) {
+  const std::string camera = kCameraOptions;
+  const std::string points =
+      "options: max_depth (metres), cloud_step, cloud_min_confidence, cloud_confidence, "
+      "cloud_filled,\ncloud_outlines, cloud_gradient_limit. Filled pixels and outlines are left "
+      "out "
+      "by default.\n\n" +
+      camera + "Raises Error where no point is left, or the images have changed.";
+  py::class_<MatchResult>(module, "MatchResult",
+                          "The maps of a pair, or of several images. Arrays are of the reference's "
+                          "size, HxW.\n\nWhat compute() did not make at once is made when it is "
+                          "asked for; it raises Error if the images\nhave changed by then.")
+      .def_property_readonly("disparity", with_owner(&MatchResult::disparity),
+                             "float32: x_left - x_right in pixels; NaN: unknown.")
+      .def_property_readonly("disparity_y", with_owner(&MatchResult::disparity_y),
+                             "float32: y_left - y_right in pixels, with disparities_y; else None.")
+      .def_property_readonly("right_disparity", with_owner(&MatchResult::right_disparity),
+                             "float32: the map of the right image. Not of several images.")
+      .def_property_readonly("confidence", with_owner(&MatchResult::confidence),
+                             "float32: confidence before refinement; its scale depends on the "
+                             "method, see `vantage match --confidence`.")
+      .def_property_readonly("posterior_mean", with_owner(&MatchResult::posterior_mean),
+                             "float32: mean of p(d) before refinement, in pixels; NaN: no "
+                             "probability.\n\nUsageError for methods without probabilities: it "
+                             "needs bayes or a preset but realtime.")
+      .def_property_readonly("posterior_variance", with_owner(&MatchResult::posterior_variance),
+                             "float32: variance of p(d) in square pixels, as posterior_mean.")
+      .def_property_readonly("cyclopean", with_owner(&MatchResult::cyclopean),
+                             "float32: disparities of a camera in the middle; NaN unless both "
+                             "cameras see it.\n\nUsageError without selection=\"symmetric\".")
+      .def_property_readonly("cyclopean_occlusion", with_owner(&MatchResult::cyclopean_occlusion),
+                             "uint8: what sees the pixels of that camera: 0 both, 128 the left "
+                             "camera alone, 255 the right one alone, 64 no match.")
+      .def_property_readonly("unmatched", &MatchResult::unmatched,
+                             "bool: pixels without a match, filled from their neighbours. A copy.")
+      .def_property_readonly("right_unmatched", &MatchResult::right_unmatched,
+                             "bool: the same of the right map.")
+      .def_property_readonly("disparities", &MatchResult::disparities,
+                             "(MIN, MAX): the range that was searched, ends included.")
+      .def("preview", &MatchResult::preview,
+           "The map in false colours over the range searched: uint8, HxWx3, RGB.")
+      .def("depth", with_options(&MatchResult::depth), py::arg("calibration") = py::none(),
+           ("Depths in metres: float32, HxW; NaN: unknown, or beyond max_depth.\n\n" + camera +
+            "Raises Error for a calibration without a scale.")
+               .c_str())
+      .def("depth_resolution", with_options(&MatchResult::depth_resolution),
+           py::arg("calibration") = py::none(),
+           ("Distance from each depth to the next one that can be told from it: float32, HxW, in "
+            "metres,\nor in the calibration's unit where its length is not known.\n\n"
+            "disparity_resolution: difference of disparities that can be told apart, in pixels; "
+            "default\n0.1, or 1 with subpixel=\"none\".\n" +
+            camera)
+               .c_str())
+      .def("cloud", with_options(&MatchResult::cloud), py::arg("calibration") = py::none(),
+           ("The pixels as points in metres, with their colours: a PointCloud.\n\n" + points)
+               .c_str())
+      .def("mesh", with_options(&MatchResult::mesh), py::arg("calibration") = py::none(),
+           ("The points as a surface of triangles, cut where the disparity jumps: a Mesh.\n\n" +
+            points)
+               .c_str());
+}
+
+}  // namespace vantage::python
