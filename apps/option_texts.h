@@ -125,6 +125,13 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"level-weight", "W",
                "With bayes and several levels: costs of a coarse pixel are W times the sum of the "
                "four it covers, above 0, at most 1; smaller: coarse levels decide less"},
+    OptionText{"slant-penalty",
+               "C|none",
+               "With bayes and several levels: surfaces may slant within a coarse pixel; what a "
+               "difference of one pixel of disparity costs there, as -ln p, at least 0: less for "
+               "repetitive texture on slanted surfaces; none: coarse pixels face the cameras",
+               {},
+               std::numeric_limits<double>::infinity()},
     OptionText{"edge-weight", "W",
                "With bayes and the diffusions: weight of neighbours across strong intensity "
                "edges, 0 to 1; 1: edges do not matter"},

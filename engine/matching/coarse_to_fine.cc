@@ -43,12 +43,14 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
                   Execution& execution) {
   const bool is_bayes = has_likelihoods(parameters);
   const auto weight = static_cast<float>(parameters.level_weight);
+  const double slant_penalty = parameters.slant_penalty / steps_per_px(parameters);
   if (regions != nullptr) {
     execution.executor().parallel_for(static_cast<int>(regions->size()), [&](int index) {
       const scheduler::Region& region = (*regions)[static_cast<std::size_t>(index)];
       std::vector<std::uint16_t> work(static_cast<std::size_t>(finer.lanes()));
       for (int y = region.rows.begin; y < region.rows.end; ++y) {
-        reduce_float_energy_row(finer, y, region.columns, weight, work.data(), coarser);
+        reduce_float_energy_row(finer, y, region.columns, weight, slant_penalty, work.data(),
+                                coarser);
       }
     });
     return;
@@ -57,8 +59,8 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
     std::vector<std::uint16_t> work(is_bayes ? static_cast<std::size_t>(finer.lanes()) : 0);
     for (int y = first_row; y < end_row; ++y) {
       if (is_bayes) {
-        reduce_float_energy_row(finer, y, {0, coarser.extent().columns}, weight, work.data(),
-                                coarser);
+        reduce_float_energy_row(finer, y, {0, coarser.extent().columns}, weight, slant_penalty,
+                                work.data(), coarser);
       } else {
         reduce_half_energy_row(finer, y, coarser);
       }

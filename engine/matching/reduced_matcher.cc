@@ -111,6 +111,7 @@ ResolvedMatchOptions reduced_options(const ResolvedMatchOptions& options,
   ResolvedMatchOptions result = at_reduction(options, whole_range, reductions);
   result.parameters.search_size = SearchSize::kFull;
   result.parameters.window_levels = 0;  // ReducedMatcher has its own
+  result.parameters.slant_penalty *= 1 << reductions;
   return result;
 }
 

@@ -33,11 +33,18 @@ void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::u
 inline constexpr int kCompactWeightUnits = 16384;
 
 /// Same for compact energies; halves of a step round up. `work`: row.lanes numbers. Non-candidate
-/// lanes as above.
+/// lanes at least as large as the last candidate, before and after.
 void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, float weight,
                                  std::uint16_t* work, std::uint8_t* energies);
 void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, float weight,
                                      std::uint8_t* energies);
+
+/// Lets the surface of a column slant: every energy becomes the smallest of itself and of those of
+/// the adjacent candidates plus `penalty`. Of all `columns` · `lanes` cells, `lanes` per column, a
+/// multiple of kLaneMultiple. Lanes that are not candidates must be at least as large as the last
+/// candidate, and remain so.
+void allow_slant_row(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty);
+void allow_slant_row_ref(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty);
 
 /// Compact cells, `lanes` per column.
 struct CompactRow {

@@ -67,6 +67,19 @@ void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, float we
   }
 }
 
+void allow_slant_row_ref(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty) {
+  for (int x = 0; x < columns; ++x, energies += lanes) {
+    int before = kMaxCompact;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const int own = energies[lane];
+      const int after = lane + 1 < lanes ? energies[lane + 1] : kMaxCompact;
+      energies[lane] =
+          static_cast<std::uint8_t>(std::min(own, std::min(before, after) + int{penalty}));
+      before = own;
+    }
+  }
+}
+
 void likelihoods_of_compact_row_ref(const CompactRow& row, float* likelihoods) {
   powers_row(row, -kEnergyStep * kLog2E, likelihoods);
 }

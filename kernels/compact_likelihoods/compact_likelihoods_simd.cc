@@ -67,6 +67,9 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight,
                              std::uint16_t* /*work*/, std::uint8_t* energies) {
   reduce_compact_energies_row_ref(row, weight, energies);
 }
+void allow_slant(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty) {
+  allow_slant_row_ref(energies, columns, lanes, penalty);
+}
 #else
 // 16-bit sums of byte cells, even and odd lanes separately; neither leaves its 128-bit block.
 template <class D8>
@@ -127,6 +130,26 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight, st
     weigh_sums(work, row.lanes, bottom, units, energies);
   }
 }
+
+// Vectors of 16 lanes, whose neighbours are in the vectors before and after.
+void allow_slant(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty) {
+  const hn::CappedTag<std::uint8_t, kLaneMultiple> d;
+  const auto cost = hn::Set(d, penalty);
+  const auto outside = hn::Set(d, static_cast<std::uint8_t>(kMaxCompact));
+  for (int x = 0; x < columns; ++x, energies += lanes) {
+    auto before = outside;
+    auto own = hn::LoadU(d, energies);
+    for (int lane = 0; lane < lanes; lane += kLaneMultiple) {
+      const bool is_last = lane + kLaneMultiple == lanes;
+      const auto after = is_last ? outside : hn::LoadU(d, energies + lane + kLaneMultiple);
+      const auto beside = hn::Min(hn::CombineShiftRightBytes<kLaneMultiple - 1>(d, own, before),
+                                  hn::CombineShiftRightBytes<1>(d, after, own));
+      hn::StoreU(hn::Min(own, hn::SaturatedAdd(beside, cost)), d, energies + lane);
+      before = own;
+      own = after;
+    }
+  }
+}
 #endif
 
 // 2^(step · exponent_of_step) for the candidates of each column, 0 in the other lanes.
@@ -173,6 +196,7 @@ HWY_AFTER_NAMESPACE();
 namespace vantage::kernels {
 HWY_EXPORT(reduce_likelihoods);
 HWY_EXPORT(reduce_compact_energies);
+HWY_EXPORT(allow_slant);
 HWY_EXPORT(likelihoods);
 HWY_EXPORT(probabilities);
 HWY_EXPORT(compact_probabilities);
@@ -184,6 +208,9 @@ void reduce_likelihoods_row(const BlockRow<float>& row, float weight, float* wor
 void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, float weight,
                                  std::uint16_t* work, std::uint8_t* energies) {
   HWY_DYNAMIC_DISPATCH(reduce_compact_energies)(row, weight, work, energies);
+}
+void allow_slant_row(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty) {
+  HWY_DYNAMIC_DISPATCH(allow_slant)(energies, columns, lanes, penalty);
 }
 void likelihoods_of_compact_row(const CompactRow& row, float* output) {
   HWY_DYNAMIC_DISPATCH(likelihoods)(row, output);

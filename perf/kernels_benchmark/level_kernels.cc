@@ -29,6 +29,7 @@ class Rows {
     kernels::reduce_compact_energies_row({compact_.data(), lower_compact_.data(), kColumns, kLanes},
                                          0.6F, sums_.data(), bytes_.data());
   }
+  void allow_slant() { kernels::allow_slant_row(slanted_.data(), kColumns, kLanes, 4); }
   void reduce_pair_energies() {
     const kernels::PairRow row{
         .columns = kColumns, .lanes = kLanes, .count = kColumns, .work = pair_sums_.data()};
@@ -74,6 +75,7 @@ class Rows {
   AlignedValues<float> lower_{kFineCells, 1000, 0.001F, 2};
   AlignedValues<std::uint8_t> compact_{kFineCells, 256, 1, 3};
   AlignedValues<std::uint8_t> lower_compact_{kFineCells, 256, 1, 6};
+  AlignedValues<std::uint8_t> slanted_{kFineCells, 256, 1, 7};
   AlignedValues<std::uint16_t> sums_{kLanes};
   AlignedValues<std::uint16_t> pair_sums_{kernels::pair_row_work(kColumns, kLanes, 0)};
   AlignedValues<std::uint16_t> stored_{kCoarseCells, 15360, 1, 4};
@@ -100,6 +102,8 @@ KernelBenchmarks level_kernels() {
           [](Rows& d) { d.reduce_likelihoods(); }),
       row("reduce_compact_energies_row", kCoarseCells, kernels::kReduceCompactEnergiesWork,
           [](Rows& d) { d.reduce_compact_energies(); }),
+      row("allow_slant_row", kFineCells, kernels::kAllowSlantWork,
+          [](Rows& d) { d.allow_slant(); }),
       row("reduce_pair_row", kCoarseCells, kernels::kReducePairEnergiesWork,
           [](Rows& d) { d.reduce_pair_energies(); }),
       row("reduce_energies_row", kCoarseCells, kernels::kReduceEnergiesWork,

@@ -7,6 +7,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <random>
 #include <string>
 #include <tuple>
@@ -134,17 +136,20 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
     double epsilon;
     int final_iterations;
     vantage::Prior shape = vantage::Prior::kContaminatedGaussian;
+    double slant_penalty = std::numeric_limits<double>::infinity();
   };
-  constexpr Prior kPriors[] = {{PriorSmoothing::kSum, 5e-6, 2},
-                               {PriorSmoothing::kMaximum, 5e-6, 2},
-                               {PriorSmoothing::kMaximum, 5e-6, 0},
-                               {PriorSmoothing::kMaximum, 0.4, 1},
-                               {PriorSmoothing::kMaximum, 0.7, 1},
-                               {PriorSmoothing::kSum, 5e-6, 2, vantage::Prior::kImpulse},
-                               {PriorSmoothing::kMaximum, 5e-6, 2, vantage::Prior::kImpulse},
-                               {PriorSmoothing::kSum, 0.01, 2, vantage::Prior::kQuadratic},
-                               {PriorSmoothing::kMaximum, 0.01, 0, vantage::Prior::kQuadratic}};
-  for (const test::SampleRow& row : test::sampled_rows({5, 3, 9})) {
+  constexpr Prior kPriors[] = {
+      {PriorSmoothing::kSum, 5e-6, 2},
+      {PriorSmoothing::kSum, 5e-6, 2, vantage::Prior::kContaminatedGaussian, 0.5},
+      {PriorSmoothing::kMaximum, 5e-6, 2, vantage::Prior::kContaminatedGaussian, 0.25},
+      {PriorSmoothing::kMaximum, 5e-6, 0, vantage::Prior::kContaminatedGaussian, 0},
+      {PriorSmoothing::kMaximum, 0.4, 1},
+      {PriorSmoothing::kMaximum, 0.7, 1},
+      {PriorSmoothing::kSum, 5e-6, 2, vantage::Prior::kImpulse},
+      {PriorSmoothing::kMaximum, 5e-6, 2, vantage::Prior::kImpulse},
+      {PriorSmoothing::kSum, 0.01, 2, vantage::Prior::kQuadratic},
+      {PriorSmoothing::kMaximum, 0.01, 0, vantage::Prior::kQuadratic}};
+  for (const test::SampleRow& row : test::sampled_rows({5, 3, std::size(kPriors)})) {
     const Shape& shape = kShapes[row[0]];
     const int levels = kLevels[row[1]];
     const Prior& prior = kPriors[row[2]];
@@ -165,6 +170,7 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
         options.parameters.prior_growth = 1.2;
       }
       options.parameters.level_weight = 0.6;
+      options.parameters.slant_penalty = prior.slant_penalty;
     }
     options.parameters.edge_weight = 0.2;
     options.parameters.prior_smoothing = prior.smoothing;

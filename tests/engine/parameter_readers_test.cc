@@ -187,6 +187,7 @@ const std::map<std::string_view, Changes>& changes() {
        values_of<PriorSmoothing>(&P::prior_smoothing,
                                  {PriorSmoothing::kSum, PriorSmoothing::kMaximum})},
       {"level-weight", values_of<double>(&P::level_weight, {0.4})},
+      {"slant-penalty", values_of<double>(&P::slant_penalty, {0.25})},
       {"edge-weight", values_of<double>(&P::edge_weight, {0.05})},
       {"edge-contrast", values_of<double>(&P::edge_contrast, {40})},
       {"edge-diffusion", values_of<int>(&P::edge_diffusion, {1, 3})},

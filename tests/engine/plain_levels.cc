@@ -61,8 +61,21 @@ int byte_steps(const Volume& costs, const MethodParameters& parameters) {
   return steps;
 }
 
+/// Each energy, or that of an adjacent candidate plus the penalty if that is less.
+void allow_slants(Volume& volume, double penalty) {
+  const Volume upright = volume;
+  for_each_cell(volume, [&](int x, int y, int i) {
+    for (const int beside : {i - 1, i + 1}) {
+      if (beside >= 0 && beside < volume.count()) {
+        volume.at(x, y, i) = std::min(volume.at(x, y, i), upright.at(x, y, beside) + penalty);
+      }
+    }
+  });
+}
+
 /// The level's weight times −log p0 of four columns, above the least of a column.
 Volume block_sums(Volume finer, const MethodParameters& parameters, StoredCells stored) {
+  const bool is_level_1 = !finer.is_coarse;
   double weight = parameters.level_weight;
   if (stored == StoredCells::kCompact) {
     const int steps = byte_steps(finer, parameters);
@@ -88,6 +101,11 @@ Volume block_sums(Volume finer, const MethodParameters& parameters, StoredCells 
       }
     }
   });
+  if (!is_level_1 && std::isfinite(parameters.slant_penalty)) {
+    const double penalty = parameters.slant_penalty / steps_per_px(parameters);
+    allow_slants(coarser,
+                 stored == StoredCells::kCompact ? std::nearbyint(8 * penalty) / 8 : penalty);
+  }
   return coarser;
 }
 

@@ -157,6 +157,7 @@ TEST_F(TuningKeyTest, HasEveryFieldThatChangesTheWork) {
                                                 "epsilon-prior",
                                                 "prior-growth",
                                                 "level-weight",
+                                                "slant-penalty",
                                                 "edge-weight",
                                                 "edge-contrast",
                                                 "edge-diffusion",

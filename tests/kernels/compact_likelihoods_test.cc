@@ -140,6 +140,39 @@ TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreWeightedSums) {
   }
 }
 
+TEST_P(CompactLikelihoods, SlantsTakeTheSmallestOfThreeCandidates) {
+  std::mt19937 random(4);
+  for (const Shape& shape : kShapes) {
+    const int lanes = lanes_of(shape);
+    for (const int penalty : {0, 4, 200, kMaxCompact - 1}) {
+      const auto cells = static_cast<std::size_t>(shape.columns * lanes);
+      GuardedRow<std::uint8_t> actual(cells, 5, 77);
+      for (std::size_t k = 0; k < cells; ++k) {
+        const bool is_candidate = static_cast<int>(k) % lanes < shape.count;
+        actual.data()[k] = static_cast<std::uint8_t>(
+            is_candidate ? random_int(random, 0, kMaxCompact) : kMaxCompact);
+      }
+      std::vector<std::uint8_t> reference = actual.values();
+      std::vector<int> plain;
+      for (int k = 0; k < shape.columns * lanes; ++k) {
+        int min = reference[static_cast<std::size_t>(k)];
+        for (const int beside : {k - 1, k + 1}) {
+          if (beside >= 0 && beside / lanes == k / lanes && beside < shape.columns * lanes) {
+            min = std::min(min, reference[static_cast<std::size_t>(beside)] + penalty);
+          }
+        }
+        plain.push_back(min);
+      }
+      allow_slant_row_ref(reference.data(), shape.columns, lanes,
+                          static_cast<std::uint8_t>(penalty));
+      EXPECT_TRUE(std::ranges::equal(plain, reference));
+      allow_slant_row(actual.data(), shape.columns, lanes, static_cast<std::uint8_t>(penalty));
+      EXPECT_TRUE(actual.intact());
+      ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
+    }
+  }
+}
+
 TEST(CompactLikelihoodsReference, AddsUpAndSubtractsTheLeast) {
   // Lanes 0, 1 and 2 of three columns: blocks {0, 1} and {2}.
   std::vector<std::uint8_t> upper(48, 255);

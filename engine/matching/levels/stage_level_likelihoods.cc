@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -233,13 +234,19 @@ std::unique_ptr<scheduler::RowStage> make_pair_energy_reduction_stage(
 }
 
 void reduce_float_energy_row(const LevelVolume& finer, int y, scheduler::Range columns,
-                             float weight, std::uint16_t* work, LevelVolume& coarser) {
+                             float weight, double slant_penalty, std::uint16_t* work,
+                             LevelVolume& coarser) {
   auto row = block_row<std::uint8_t>(finer, y);
   row.columns = std::min(2 * columns.end, row.columns) - 2 * columns.begin;
   row.upper = finer.column<std::uint8_t>(2 * columns.begin, 2 * y);
   row.lower += row.upper - finer.column<std::uint8_t>(0, 2 * y);
-  kernels::reduce_compact_energies_row(row, weight, work,
-                                       coarser.column<std::uint8_t>(columns.begin, y));
+  auto* const energies = coarser.column<std::uint8_t>(columns.begin, y);
+  kernels::reduce_compact_energies_row(row, weight, work, energies);
+  const double steps = std::nearbyint(slant_penalty / kernels::kEnergyStep);
+  if (steps < kernels::kMaxCompact) {
+    kernels::allow_slant_row(energies, columns.size(), coarser.lanes(),
+                             static_cast<std::uint8_t>(steps));
+  }
 }
 
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(

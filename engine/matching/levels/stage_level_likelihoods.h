@@ -36,9 +36,12 @@ struct PairLevels {
 std::unique_ptr<scheduler::RowStage> make_pair_energy_reduction_stage(
     std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
     std::uint8_t without_partner, float step, float weight, const PairLevels& levels);
-/// Columns of row y of `coarser` from the energies of a coarse level. `work`: one number per lane.
+/// Columns of row y of `coarser` from the energies of a coarse level; a candidate may take the
+/// energy of an adjacent one at `slant_penalty` nats, infinite: it may not. `work`: one number per
+/// lane.
 void reduce_float_energy_row(const LevelVolume& finer, int y, scheduler::Range columns,
-                             float weight, std::uint16_t* work, LevelVolume& coarser);
+                             float weight, double slant_penalty, std::uint16_t* work,
+                             LevelVolume& coarser);
 
 /// Source stage: the likelihoods of a coarse level, computed from its energies.
 std::unique_ptr<scheduler::RowStage> make_level_likelihood_stage(

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "engine/error.h"
@@ -158,6 +160,12 @@ void MatchOptions::validate() const {
                     "along rows",
                     in_force.window_levels));
   }
+  if (std::isfinite(in_force.slant_penalty) && disparities_y) {
+    throw UsageError(
+        fmt::format("slant-penalty is {}, expected none with disparities-y: surfaces slant along "
+                    "one range only",
+                    in_force.slant_penalty));
+  }
   const RefinementOptions of_maps = resolved_refinement();
   if (in_force.selection == Selection::kSymmetric && refinement.cross_check.value_or(false)) {
     throw UsageError(
@@ -230,6 +238,9 @@ MethodParameters MatchOptions::resolved() const {
   }
   if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
     result.candidate_blocks = 0;
+  }
+  if (!parameters.slant_penalty && disparities_y) {
+    result.slant_penalty = std::numeric_limits<double>::infinity();
   }
   return result;
 }

@@ -12,6 +12,7 @@ MethodOverrides coarse_to_fine() {
   parameters.epsilon_measurement = 0.2;
   parameters.levels = 7;
   parameters.level_weight = 0.6;
+  parameters.slant_penalty = 0.5;
   parameters.epsilon_prior = 5e-6;
   parameters.prior_growth = 1.2;
   parameters.prior_smoothing = PriorSmoothing::kMaximum;

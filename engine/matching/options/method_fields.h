@@ -114,13 +114,17 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
       Field{
           "level-weight", readers::kBayesWithLevels, {is_weight, "a number above 0 and at most 1"}},
       options.level_weight...);
+  constexpr auto is_limit = [](double v) { return v >= 0; };
+  visit(Field{"slant-penalty",
+              readers::kBayesWithLevels,
+              {is_limit, "a number of at least 0, or none"}},
+        options.slant_penalty...);
   visit(Field{"edge-weight", readers::kNamed, {is_within<0, 1>, "a number from 0 to 1"}},
         options.edge_weight...);
   visit(Field{"edge-contrast", readers::kEdges, kGreyLevels}, options.edge_contrast...);
   visit(Field{"edge-diffusion", readers::kEdges, {is_within<0, 1000>, "a number from 0 to 1000"}},
         options.edge_diffusion...);
 
-  constexpr auto is_limit = [](double v) { return v >= 0; };
   visit(Field{"selection", readers::kAll}, options.selection...);
   visit(Field{"jump-limit", readers::kScanline, {is_limit, "a number of at least 0, or none"}},
         options.jump_limit...);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <type_traits>
 
 #include "engine/option_field.h"
@@ -157,6 +158,9 @@ struct MethodParametersOf {
   /// Bayes: weight of the summed energies of 2×2 pixels, which are not independent, as the energy
   /// of one pixel of the next coarser level; 0 < w ≤ 1.
   Field<double> level_weight = by_default<Field>(1.0);
+  /// Bayes: from level 2 on, a disparity may take the energy of one a pixel beside it at this many
+  /// nats, ≥ 0, because parts of a slanted block differ; infinite: blocks face the cameras.
+  Field<double> slant_penalty = by_default<Field>(std::numeric_limits<double>::infinity());
   /// Diffusions and Bayes: weight of a neighbour across the strongest intensity edge, 0..1; 1:
   /// edges are ignored.
   Field<double> edge_weight = by_default<Field>(1.0);
