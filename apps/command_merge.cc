@@ -7,6 +7,7 @@
 
 #include "apps/commands.h"
 #include "apps/film_reports.h"
+#include "apps/flicker_values.h"
 #include "apps/outputs.h"
 #include "apps/run_report.h"
 #include "apps/run_results.h"

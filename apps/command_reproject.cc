@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "apps/cloud_settings.h"
+#include "apps/metric_settings.h"
 #include "apps/commands.h"
 #include "apps/depth_outputs.h"
 #include "apps/input_limits.h"

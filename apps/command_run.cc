@@ -130,7 +130,8 @@ int command_run(const Arguments& arguments) {
   SequenceReport sequence;
   {
     Progress progress("run", "frames", job.shown_progress());
-    SequenceRun run = session.run(job, shots ? &*shots : nullptr);
+    SequenceRun run =
+        session.run(job, *session.pairs, shots ? &*shots : nullptr, session.memory.in_flight);
     run.stop = &interrupted;
     run.on_progress = [&](const SequenceProgress& now) {
       progress.update(now.frames_done, now.frames_total, now.cells);

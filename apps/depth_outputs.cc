@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/cloud_settings.h"
+#include "apps/metric_settings.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/depth_io.h"

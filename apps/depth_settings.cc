@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/cloud_settings.h"
+#include "apps/metric_settings.h"
 #include "engine/error.h"
 #include "engine/io/map_formats.h"
 
@@ -67,19 +67,6 @@ void add_depth_settings(Settings& settings, DepthSettings& depth) {
           "it, in metres, or in the calibration's unit where that is not known: {}",
           listed_map_formats(MapContent::kConfidence)));
   add_disparity_resolution_setting(settings, depth.step_px);
-}
-
-void add_disparity_resolution_setting(Settings& settings, std::optional<double>& step_px) {
-  settings.number("disparity-resolution", step_px, "PX",
-                  "Difference of disparities that can be told apart, for --depth-resolution; auto: "
-                  "0.1, or 1 with --subpixel none");
-}
-
-void require_disparity_resolution(const std::optional<double>& step_px) {
-  if (step_px && !(*step_px > 0 && std::isfinite(*step_px))) {
-    throw UsageError(
-        fmt::format("disparity-resolution is {}, expected a number above 0", *step_px));
-  }
 }
 
 SettingValue depth_resolution_values(const DisparityQuantiles& disparities,

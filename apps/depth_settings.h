@@ -55,10 +55,6 @@ class DepthGeometry {
 /// Binds all of it, in a group of its own.
 void add_depth_settings(Settings& settings, DepthSettings& depth);
 
-/// --disparity-resolution, in the present group, and its check, which throws UsageError.
-void add_disparity_resolution_setting(Settings& settings, std::optional<double>& step_px);
-void require_disparity_resolution(const std::optional<double>& step_px);
-
 /// For reports: δZ / Z at these disparities, and with `scale` depths too.
 SettingValue depth_resolution_values(const DisparityQuantiles& disparities,
                                      const std::optional<DepthScale>& scale, double step_px);

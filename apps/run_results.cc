@@ -9,6 +9,7 @@
 
 #include "apps/automatic_disparities.h"
 #include "apps/depth_settings.h"
+#include "apps/flicker_values.h"
 #include "apps/tell.h"
 #include "engine/sequence/sequence_join.h"
 
@@ -109,23 +110,6 @@ void warn_of_cut_range(const RunJob& job, const SequenceReport& sequence) {
 }
 
 }  // namespace
-
-SettingValue flicker_values(const FlickerSums& sums) {
-  if (sums.frames == 0) {
-    return nullptr;
-  }
-  SettingValue views = SettingValue::array();
-  for (const ViewFlickerSums& view : sums.views) {
-    views.push_back({{"mean_grey_change", view.mean_grey_change()},
-                     {"mean_brightness_jump", view.mean_brightness_jump(sums.frames)}});
-  }
-  return {{"frames", sums.frames},
-          {"share_compared", sums.share_compared()},
-          {"mean_disparity_change_px", sums.mean_disparity_change_px()},
-          {"share_jumped", sums.share_jumped()},
-          {"mean_grey_change", sums.mean_grey_change()},
-          {"views", views}};
-}
 
 void fill_report(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
                  const DeliveredFrames& delivered, const std::string& sound_problem,

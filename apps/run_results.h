@@ -23,7 +23,4 @@ void print_sound_problem(const std::string& command, const std::string& problem)
 void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
                    double wall_seconds);
 
-/// The flicker of the results, for the report; null if it was not measured.
-SettingValue flicker_values(const FlickerSums& sums);
-
 }  // namespace vantage::apps

@@ -24,29 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Any frame shows the shape of all frames; the run itself reports a bad one at the start.
-constexpr int kFramesTried = 100;
-
-void read_first_pair(PairSource& pairs, FramePair& pair) {
-  const int tries = std::min(kFramesTried, pairs.pair_count());
-  for (int index = 0; index < tries; ++index) {
-    try {
-      pairs.skip_to(index);
-      if (pairs.fetch(pair)) {
-        pairs.decode(pair);
-        pairs.skip_to(0);
-        return;
-      }
-    } catch (const Error& error) {
-      if (index + 1 == tries) {
-        throw Error(fmt::format("none of the first {} frames can be read; the last error is: {}",
-                                tries, error.what()));
-      }
-    }
-  }
-  throw Error("the sequence has no pair of frames");
-}
-
 /// The first pair that a run takes from a stream; those before it are dropped.
 void read_first_streamed_pair(PairSource& pairs, int first, FramePair& pair) {
   pairs.skip_to(first);
@@ -55,14 +32,6 @@ void read_first_streamed_pair(PairSource& pairs, int first, FramePair& pair) {
   }
   pairs.decode(pair);
   pairs.skip_to(first);
-}
-
-PairShape shape_of(const Photograph& photograph) {
-  return {.source = {photograph.width(), photograph.height()},
-          .channels = photograph.channels(),
-          .bytes_per_value =
-              std::visit([](const auto& image) { return static_cast<int>(sizeof(*image.row(0))); },
-                         photograph.pixels)};
 }
 
 RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSession& session) {
@@ -158,35 +127,6 @@ std::string counted_frames(const RunJob& job, int frame_count) {
 
 }  // namespace
 
-void RunSession::rectify(FramePair& pair, Execution& pool) const {
-  if (!rectifier) {
-    return;
-  }
-  Photograph rectified;
-  rectifier->apply(pair.left, Side::kLeft, rectified, pool);
-  std::swap(pair.left, rectified);
-  rectifier->apply(pair.right, Side::kRight, rectified, pool);
-  std::swap(pair.right, rectified);
-}
-
-SequenceRun RunSession::run(const RunJob& job, const ShotTable* shots) const {
-  // Pairs of a list may be unrelated.
-  const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
-                        !job.sequence.temporal.uses_past() && !shape.cameras && !map_camera;
-  return {.pairs = *pairs,
-          .selection = selection,
-          .frame_size = any_size ? std::nullopt : std::optional(shape.source),
-          .rectifier = rectifier ? &*rectifier : nullptr,
-          .cameras = shape.cameras ? &*shape.cameras : nullptr,
-          .map_camera = map_camera ? &*map_camera : nullptr,
-          .poses = poses ? &*poses : nullptr,
-          .shots = shots,
-          .in_flight = memory.in_flight,
-          .keep_going = job.keep_going,
-          .on_progress = {},
-          .stop = nullptr};
-}
-
 std::string RunSession::part_name(const RunJob& job) {
   std::string name;
   if (job.frames) {
@@ -198,21 +138,14 @@ std::string RunSession::part_name(const RunJob& job) {
   return name.empty() ? "all" : name;
 }
 
-std::optional<FrameRange> selected_pairs(const RunJob& job, const PairSource& pairs) {
-  return job.frames ? std::optional(pairs.pairs_of(*job.frames)) : std::nullopt;
-}
-
 RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   FileChecks files = check_files(job, settings);
   RunSession session;
-  session.pairs = open_pair_source(job.input);
+  open_source(job, session);
+  session.selection.shard = job.shard;
   for (const fs::path& file : session.pairs->files()) {
     files.add_input(file);
   }
-  session.selection = {.frame_count = session.pairs->pair_count(),
-                       .chunk_frames = job.sequence.chunk_frames,
-                       .frames = selected_pairs(job, *session.pairs),
-                       .shard = job.shard};
   FramePair first;
   report.timed_file_access("open", [&] {
     if (session.pairs->is_stream()) {
@@ -224,41 +157,12 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
       read_first_pair(*session.pairs, first);
     }
   });
-  session.shape = shape_of(first.left);
-  session.shape.is_video = !session.pairs->sound().file.empty();
-  session.shape.frames_kept = session.pairs->frames_kept();
-  session.shape.pair_count = session.pairs->pair_count();
-  if (job.frames && session.selection.all().empty()) {
-    throw Error(job.input.every.takes_all()
-                    ? fmt::format("--frames starts at {} but the input has {} frames (0 to {})",
-                                  job.frames->first, session.selection.frame_count,
-                                  session.selection.frame_count - 1)
-                    : fmt::format("--frames {}-{} has none of the {} frames that --every {} takes",
-                                  job.frames->first, job.frames->end - 1,
-                                  session.selection.frame_count, to_text(job.input.every)));
-  }
   Execution execution(job.common.execution);
+  std::optional<StereoCalibration> calibration;
   if (!job.calibration.empty()) {
-    const StereoCalibration calibration = job.rig.read(job.calibration);
-    Rectifier rectifier(calibration, first.left.width(), first.left.height(), job.rectification);
-    session.shape.cameras = rectifier.pair();
-    if (job.sequence.is_metric()) {
-      session.map_camera = map_camera(rectifier.pair(), job.sequence.match.reference,
-                                      job.rig.required_unit_of(calibration));
-    }
-    if (rectifier.needs_rectification()) {
-      session.rectifier.emplace(std::move(rectifier));
-      session.shape.is_rectified_here = true;
-      session.rectify(first, execution);
-    }
+    calibration = job.rig.read(job.calibration);
   }
-  if (!job.poses.empty()) {
-    session.poses.emplace(read_trajectory(job.poses), job.poses);
-  }
-  if (job.calibration.empty() && job.sequence.is_metric()) {
-    session.map_camera = job.rig.camera(first.left.width(), first.left.height(),
-                                        job.sequence.match.reference, false);
-  }
+  prepare_pairs(job, calibration, job.sequence.is_metric(), first, execution, session);
   if (job.check_rectification) {
     warn_unless_rectified(settings, job.common, expects_negative_disparities(job.sequence.match),
                           first.left, first.right, report);
@@ -329,7 +233,7 @@ RunIdentity read_run(const std::string& folder, RunJob& job, FileChecks& files) 
   try {
     settings.set_values(parse_json(identity.settings, "settings"));
     job.output = folder;
-    complete_sequence(job);
+    complete_sequence(job, false);
   } catch (const UsageError& error) {
     throw Error(fmt::format("{}: cannot be read as the settings of a run: {}",
                             (journal / "run.json").string(), error.what()));

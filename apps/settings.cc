@@ -353,6 +353,13 @@ void Settings::set_values(const SettingValue& values) {
   }
 }
 
+void Settings::take_values(const SettingValue& values) {
+  set_values(values);
+  for (const auto& [key, value] : values.items()) {
+    set_.insert(key);
+  }
+}
+
 void Settings::set_short_help(std::vector<std::string_view> names,
                               std::vector<std::string_view> examples) {
   for (const std::string_view name : names) {

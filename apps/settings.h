@@ -114,6 +114,8 @@ class Settings {
   /// Restores the values of result_values(), with paths as written by stored_name(). Throws
   /// UsageError naming an unknown key or an invalid value.
   void set_values(const SettingValue& values);
+  /// The same for values that the user sets.
+  void take_values(const SettingValue& values);
   /// The paths of all inputs as the user gave them, including the file of --config.
   [[nodiscard]] std::vector<std::string> input_paths() const;
   /// All settings as --print-config writes them; `auto` is followed by a comment that says what it

@@ -90,7 +90,7 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
   {
     Progress progress("run", "frames",
                       reads_stream(job) ? ProgressStyle::kNone : job.shown_progress());
-    SequenceRun run = session.run(job, nullptr);
+    SequenceRun run = session.run(job, *session.pairs, nullptr, session.memory.in_flight);
     run.frame_size = session.shape.source;
     run.stop = &interrupt_flag();
     run.on_progress = [&](const SequenceProgress& now) {

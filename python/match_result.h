@@ -40,7 +40,7 @@ struct ComputedMaps {
   MatchOptions options;  ///< with the range that was searched
   DisparityMaps maps;
   Wanted has;
-  PosteriorMaps posterior;
+  PosteriorMaps posterior = {};
   std::optional<CyclopeanMap> cyclopean = std::nullopt;
   std::optional<MetricCamera> camera = std::nullopt;   ///< where it is known
   std::optional<PreviewRange> preview = std::nullopt;  ///< default: the range that was searched

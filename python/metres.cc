@@ -1,14 +1,11 @@
 // Depths, points and surfaces of disparity maps.
 #include "python/metres.h"
 
-#include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include <cmath>
-
-#include "apps/cloud_settings.h"
 #include "apps/match_settings.h"
+#include "apps/metric_settings.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/view_geometry/depth_resolution.h"
 #include "python/arrays.h"
@@ -27,10 +24,11 @@ MetricOptions metric_options(MetricOutput output, const py::dict& keywords) {
   } else if (output == MetricOutput::kDepth) {
     apps::add_max_depth_setting(settings, options.cloud.max_depth);
   } else {
-    settings.number("disparity-resolution", options.disparity_resolution_px, "PX", "");
+    apps::add_disparity_resolution_setting(settings, options.disparity_resolution_px);
   }
   set_options(settings, keywords);
   options.cloud.validate();
+  apps::require_disparity_resolution(options.disparity_resolution_px);
   if (options.rig.images_are_rectified) {
     throw UsageError(
         "already-rectified is of files, expected Calibration.load(path, already_rectified=True)");

@@ -45,7 +45,6 @@ MetricCamera metric_camera(const MetricMap& map,
 
 Image<float> depths(const MetricMap& map, const MetricCamera& camera, const MetricOptions& options,
                     Execution& execution);
-/// Throws UsageError for a resolution that is not above 0.
 Image<float> depth_resolutions(const MetricMap& map, const MetricCamera& camera,
                                const MetricOptions& options, double default_step_px,
                                Execution& execution);

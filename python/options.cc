@@ -75,8 +75,9 @@ SettingValue to_setting(const std::string& name, const py::handle& object) {
         value[1].is_number_integer()) {
       return fmt::format("{}:{}", value[0].get<long long>(), value[1].get<long long>());
     }
-    if (name == "principal-point" && value.is_array() && value.size() == 2 &&
-        value[0].is_number() && value[1].is_number()) {
+    const bool is_point = name == "principal-point" || name == "stereo-views";
+    if (is_point && value.is_array() && value.size() == 2 && value[0].is_number() &&
+        value[1].is_number()) {
       return fmt::format("{},{}", value[0].get<double>(), value[1].get<double>());
     }
     return value;
@@ -106,7 +107,7 @@ void set_options(apps::Settings& settings, const py::dict& options) {
       values[name] = to_setting(name, value);
     }
   }
-  settings.set_values(values);
+  settings.take_values(values);
 }
 
 Execution& take_execution(py::dict& options) {
@@ -157,6 +158,13 @@ py::object to_python(const SettingValue& value) {
       list.append(to_python(member));
     }
     return list;
+  }
+  if (value.is_object()) {
+    py::dict members;
+    for (const auto& [name, member] : value.items()) {
+      members[name.c_str()] = to_python(member);
+    }
+    return members;
   }
   return py::none();
 }

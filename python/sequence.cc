@@ -1,128 +1,309 @@
-// Pairs of a sequence, matched one after the other.
+// Frames of a sequence, computed ahead of the loop that takes them.
 #include <fmt/format.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
 
-#include "apps/pair_source_settings.h"
+#include "apps/flicker_values.h"
+#include "apps/frame_step_setting.h"
+#include "apps/option_groups.h"
+#include "apps/sequence_job.h"
+#include "apps/sequence_session.h"
+#include "engine/reprojection/ply_file.h"
+#include "engine/sequence/frame_iterator.h"
 #include "engine/sequence/sequence_range.h"
 #include "engine/vantage.h"
+#include "python/arrays.h"
 #include "python/calls.h"
-#include "python/matcher.h"
+#include "python/match_result.h"
 #include "python/options.h"
 
 namespace vantage::python {
 namespace py = pybind11;
 namespace {
 
-/// The pairs of an input, rectified, with the range of all of them. Thread rule: one thread at a
-/// time.
-class Sequence {
- public:
-  Sequence(const std::optional<StereoCalibration>& calibration, double kept_outline,
-           py::dict keywords) {
-    setup_.execution = &take_execution(keywords);
-    PairSourceOptions input;
-    apps::Settings settings("", "");
-    apps::add_pair_source_settings(settings, input);
-    apps::add_reference_setting(settings, setup_.options);
-    apps::add_match_settings(settings, setup_.options);
-    set_options(settings, keywords);
-    setup_.options.validate();
-    input.validate();
-    const RectificationOptions rectification{kept_outline};
-    rectification.validate();
-    if (setup_.options.disparities_y) {
-      throw UsageError("disparities-y cannot be used with sequences: rows only");
+/// Outputs that are files of a run, and what is there instead.
+constexpr std::array<std::pair<SequenceOutput, const char*>, 6> kNotOfFrames = {
+    {{SequenceOutput::kDepth, "frame.result.depth()"},
+     {SequenceOutput::kDepthResolution, "frame.result.depth_resolution()"},
+     {SequenceOutput::kCloud, "frame.result.cloud()"},
+     {SequenceOutput::kMesh, "frame.result.mesh()"},
+     {SequenceOutput::kDepthVideo, "'vantage run'"},
+     {SequenceOutput::kComfort, "'vantage run'"}}};
+
+void require_outputs_of_frames(const SequenceOptions& options) {
+  for (const auto& [output, instead] : kNotOfFrames) {
+    if (options.saves(output)) {
+      throw UsageError(fmt::format("save holds {}, expected {} instead",
+                                   apps::output_names({output})[0].get<std::string>(), instead));
     }
-    without_gil([&] { open(input, calibration, rectification); });
-    matcher_ = std::make_unique<PairMatcher>(setup_.options, *setup_.execution);
   }
+}
 
-  [[nodiscard]] int count() const { return pairs_->pair_count(); }
-  void skip_to(int index) { pairs_->skip_to(index); }
+/// What a user asked for, opened and examined. Thread rule: pure, but for the source.
+struct OpenSequence {
+  apps::SequenceJob job;
+  apps::SequenceSession session;
+  std::optional<ShotTable> shots;
+  Execution* execution = nullptr;
+  int in_flight = 1;
+  std::mutex mutex;                  ///< of the next one
+  std::unique_ptr<PairSource> idle;  ///< no iterator reads it
 
-  /// (index, name, left, right, result) of the next pair; None at the end.
-  py::object next() {
-    std::pair<Photograph, Photograph> images;
-    FramePair pair;
-    const bool is_there = without_gil([&] {
-      if (!pairs_->fetch(pair)) {
-        return false;
+  std::unique_ptr<PairSource> take_source() {
+    {
+      const std::scoped_lock lock(mutex);
+      if (idle) {
+        return std::move(idle);
       }
-      pairs_->decode(pair);
-      rectify(pair);
-      return true;
+    }
+    return open_pair_source(job.input);
+  }
+  void give_back(std::unique_ptr<PairSource> source) {
+    const std::scoped_lock lock(mutex);
+    idle = std::move(source);
+  }
+};
+
+bool knows_metres(const apps::SequenceJob& job,
+                  const std::optional<StereoCalibration>& calibration) {
+  return calibration ? job.rig.unit_of(*calibration).has_value()
+                     : job.rig.focal_length_px && job.rig.baseline_m;
+}
+
+void open(const std::optional<StereoCalibration>& calibration, OpenSequence& opened) {
+  apps::SequenceJob& job = opened.job;
+  apps::SequenceSession& session = opened.session;
+  Execution& execution = *opened.execution;
+  apps::open_source(job, session);
+  FramePair first;
+  apps::read_first_pair(*session.pairs, first);
+  apps::prepare_pairs(job, calibration, knows_metres(job, calibration), first, execution, session);
+  const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
+  MatchOptions& match = job.sequence.match;
+  if (match.disparities_auto) {
+    match.disparities =
+        require_disparity_range(find_sequence_range(*session.pairs, rectify, execution));
+    match.disparities_auto = false;
+  }
+  job.sequence.validate();
+  opened.in_flight = plan_memory(job.sequence, {job.in_flight, std::nullopt}, session.shape, first,
+                                 execution.options())
+                         .in_flight;
+  if (job.sequence.needs_shots()) {
+    SurveyHooks hooks;
+    hooks.in_flight = opened.in_flight;
+    hooks.prepare = rectify;
+    opened.shots = survey_shots(*session.pairs, 0, session.selection.frame_count, job.sequence,
+                                hooks, execution);
+  }
+  opened.idle = std::move(session.pairs);
+}
+
+Photograph copy_of(const Photograph& photograph) {
+  return std::visit([](const auto& image) { return Photograph{image.copy()}; }, photograph.pixels);
+}
+
+/// The frames of one loop. Thread rule: one thread at a time, as the GIL has it.
+class FrameLoop {
+ public:
+  FrameLoop(std::shared_ptr<OpenSequence> opened, const std::vector<int>& frames)
+      : opened_(std::move(opened)) {
+    without_gil([&] {
+      source_ = opened_->take_source();
+      run_.emplace(run_of_source());
+      frames_ = std::make_unique<FrameIterator>(opened_->job.sequence, *run_, frames,
+                                                *opened_->execution);
     });
-    if (!is_there) {
+  }
+  FrameLoop(const FrameLoop&) = delete;
+  FrameLoop& operator=(const FrameLoop&) = delete;
+  ~FrameLoop() { close(); }
+
+  /// Attributes of a Frame; None at the end.
+  py::object next() {
+    if (!frames_) {
       return py::none();
     }
-    images = {copy_of(pair.left), copy_of(pair.right)};
-    auto result = std::make_unique<MatchResult>(
-        *matcher_, *setup_.execution, MatchedImages(std::move(pair.left), std::move(pair.right)),
-        Wanted());
-    return py::make_tuple(pair.index, pairs_->describe(pair.index),
-                          array_of(std::move(images.first), ChannelOrder::kRgb),
-                          array_of(std::move(images.second), ChannelOrder::kRgb),
-                          py::cast(std::move(result)));
+    std::optional<ComputedFrame> frame = without_gil([&] { return frames_->next(); });
+    if (!frame) {
+      return py::none();
+    }
+    flicker_.add(frame->flicker);
+    return attributes_of(*frame);
+  }
+
+  void close() {
+    if (!frames_) {
+      return;
+    }
+    const py::gil_scoped_release release;
+    skipped_ = frames_->skipped();
+    frames_.reset();
+    opened_->give_back(std::move(source_));
+  }
+
+  [[nodiscard]] std::vector<std::pair<int, std::string>> skipped() const {
+    std::vector<std::pair<int, std::string>> frames;
+    for (const FrameRemark& remark : frames_ ? frames_->skipped() : skipped_) {
+      frames.emplace_back(remark.frame, remark.text);
+    }
+    return frames;
+  }
+  /// Of all frames so far, as the report of a run has it.
+  [[nodiscard]] py::object flicker() const { return to_python(apps::flicker_values(flicker_)); }
+
+ private:
+  SequenceRun run_of_source() const {
+    const apps::SequenceSession& session = opened_->session;
+    return session.run(opened_->job, *source_, opened_->shots ? &*opened_->shots : nullptr,
+                       opened_->in_flight);
+  }
+
+  [[nodiscard]] ComputedMaps maps_of(ComputedFrame& frame) const {
+    const SequenceOptions& options = opened_->job.sequence;
+    FrameSlot& slot = *frame.slot;
+    ComputedMaps computed{.options = options.match,
+                          .maps = std::move(slot.maps),
+                          .has = {.other = frame.has_both_maps,
+                                  .confidence = options.saves(SequenceOutput::kConfidence),
+                                  .posterior = options.saves_posterior()},
+                          .preview = frame.preview,
+                          .is_final = options.temporal.uses_past() || !options.baselines.empty()};
+    computed.options.disparities = frame.searched;
+    if (options.saves_posterior()) {
+      computed.posterior = {slot.posterior.mean_px().copy(), slot.posterior.variance_px2().copy()};
+    }
+    if (options.saves_cyclopean()) {
+      computed.cyclopean.emplace(std::move(slot.cyclopean));
+    }
+    if (frame.camera) {
+      computed.camera = {*frame.camera,
+                         std::string(opened_->session.poses ? kWorldFrame : kCameraFrame)};
+    }
+    return computed;
+  }
+
+  [[nodiscard]] py::dict attributes_of(ComputedFrame& frame) const {
+    FrameSlot& slot = *frame.slot;
+    const bool is_rectified = slot.left != &slot.pair.left;
+    Photograph& left = is_rectified ? slot.rectified[0] : slot.pair.left;
+    Photograph& right = is_rectified ? slot.rectified[1] : slot.pair.right;
+    std::pair<Photograph, Photograph> images;
+    ComputedMaps computed = without_gil([&] {
+      images = {copy_of(left), copy_of(right)};
+      return maps_of(frame);
+    });
+    py::dict found;
+    found["index"] = slot.frame;
+    found["name"] = source_->describe(slot.frame);
+    found["left"] = array_of(std::move(images.first), ChannelOrder::kRgb);
+    found["right"] = array_of(std::move(images.second), ChannelOrder::kRgb);
+    found["result"] = py::cast(std::make_unique<MatchResult>(
+        *opened_->execution, MatchedImages(std::move(left), std::move(right)),
+        std::move(computed)));
+    add_views(slot, found);
+    found["flicker"] = to_python(apps::flicker_values(frame.flicker));
+    found["share_reused"] = slot.match.searched_share
+                                ? py::object(py::float_(1 - *slot.match.searched_share))
+                                : py::none();
+    found["remarks"] = py::cast(slot.pair.remarks);
+    return found;
+  }
+
+  void add_views(FrameSlot& slot, py::dict& found) const {
+    const SequenceOptions& options = opened_->job.sequence;
+    py::list views;
+    py::list holes;
+    py::list sources;
+    for (std::size_t view = 0; view < options.views.size(); ++view) {
+      views.append(array_of(std::move(slot.views[view].image), ChannelOrder::kRgb));
+      holes.append(array_of(std::as_const(slot.views[view].holes).view()));
+      sources.append(array_of(Photograph{std::move(slot.views[view].sources)}, ChannelOrder::kRgb));
+    }
+    found["views"] = views;
+    found["holes"] = holes;
+    found["sources"] = sources;
+    found["stereo"] = options.saves(SequenceOutput::kStereo)
+                          ? py::object(array_of(std::move(slot.stereo), ChannelOrder::kRgb))
+                          : py::none();
+  }
+
+  std::shared_ptr<OpenSequence> opened_;
+  std::unique_ptr<PairSource> source_;
+  std::optional<SequenceRun> run_;
+  std::unique_ptr<FrameIterator> frames_;  ///< null: closed
+  std::vector<FrameRemark> skipped_;
+  FlickerSums flicker_;
+};
+
+/// Sequence of the package.
+class Sequence {
+ public:
+  Sequence(const std::optional<StereoCalibration>& calibration, py::dict keywords)
+      : opened_(std::make_shared<OpenSequence>()) {
+    apps::SequenceJob& job = opened_->job;
+    opened_->execution = &take_execution(keywords);
+    apps::Settings settings("", "");
+    apps::add_input_settings(settings, job);
+    apps::add_save_setting(settings, job);
+    apps::add_picture_settings(settings, job);
+    apps::add_rig_scale_settings(settings, job.rig);
+    apps::add_poses_setting(settings, job);
+    apps::add_steadiness_settings(settings, job);
+    apps::add_frames_setting(settings, job.frames, job.step_of_frames);
+    apps::add_chunk_frames_setting(settings, job);
+    apps::add_in_flight_setting(settings, job);
+    settings.flag("keep-going", job.keep_going, "");
+    apps::add_reference_setting(settings, job.sequence.match);
+    apps::add_match_settings(settings, job.sequence.match);
+    apps::add_synthesis_settings(settings, job.sequence.synthesis);
+    set_options(settings, keywords);
+    if (calibration) {
+      job.calibration = calibration->file.empty() ? "calibration" : calibration->file;
+    }
+    apps::read_pose_files(job.views);
+    apps::complete_sequence(job, false);
+    require_outputs_of_frames(job.sequence);
+    apps::check_sequence(job, settings, false);
+    if (job.input.stereo == "-") {
+      throw UsageError("stereo is -, expected a file: 'vantage run' reads standard input");
+    }
+    without_gil([&] { open(calibration, *opened_); });
+  }
+
+  [[nodiscard]] int count() const { return opened_->session.selection.frame_count; }
+  /// Those of `frames` as a text.
+  [[nodiscard]] std::pair<int, int> selected() const {
+    const FrameRange range = opened_->session.selection.all();
+    return {range.first, range.end};
+  }
+  [[nodiscard]] std::unique_ptr<FrameLoop> loop(const std::vector<int>& frames) const {
+    return std::make_unique<FrameLoop>(opened_, frames);
   }
 
  private:
-  static Photograph copy_of(const Photograph& photograph) {
-    return std::visit([](const auto& image) { return Photograph{image.copy()}; },
-                      photograph.pixels);
-  }
-
-  void open(const PairSourceOptions& input, const std::optional<StereoCalibration>& calibration,
-            const RectificationOptions& rectification) {
-    pairs_ = open_pair_source(input);
-    if (pairs_->pair_count() == 0) {
-      throw Error("the sequence has no pair of frames");
-    }
-    if (calibration) {
-      FramePair first;
-      pairs_->fetch(first);
-      pairs_->decode(first);
-      pairs_->skip_to(0);
-      rectifier_.emplace(*calibration, first.left.width(), first.left.height(), rectification);
-    }
-    if (setup_.options.disparities_auto) {
-      setup_.options.disparities = require_disparity_range(find_sequence_range(
-          *pairs_, [&](FramePair& pair) { rectify(pair); }, *setup_.execution));
-      setup_.options.disparities_auto = false;
-      setup_.options.validate();
-    }
-  }
-
-  void rectify(FramePair& pair) const {
-    if (!rectifier_ || !rectifier_->needs_rectification()) {
-      return;
-    }
-    for (const Side side : {Side::kLeft, Side::kRight}) {
-      Photograph& image = side == Side::kLeft ? pair.left : pair.right;
-      Photograph rectified;
-      rectifier_->apply(image, side, rectified, *setup_.execution);
-      image = std::move(rectified);
-    }
-  }
-
-  MatchSetup setup_;
-  std::unique_ptr<PairSource> pairs_;
-  std::optional<Rectifier> rectifier_;
-  std::unique_ptr<PairMatcher> matcher_;
+  std::shared_ptr<OpenSequence> opened_;
 };
 
 }  // namespace
 
 void bind_sequence(py::module_& module) {
+  py::class_<FrameLoop>(module, "FrameLoop")
+      .def("next", &FrameLoop::next)
+      .def("close", &FrameLoop::close)
+      .def("skipped", &FrameLoop::skipped)
+      .def("flicker", &FrameLoop::flicker);
   py::class_<Sequence>(module, "Sequence")
-      .def(py::init<const std::optional<StereoCalibration>&, double, py::dict>())
-      .def("next", &Sequence::next)
-      .def("skip_to", &Sequence::skip_to)
+      .def(py::init<const std::optional<StereoCalibration>&, py::dict>())
+      .def("loop", &Sequence::loop)
+      .def("selected", &Sequence::selected)
       .def("__len__", &Sequence::count);
 }
 

@@ -69,6 +69,12 @@ void InterruptibleScope::check() {
   }
 }
 
+void check_interruption() {
+  if (InterruptibleScope* const scope = InterruptibleScope::in_use()) {
+    scope->check();
+  }
+}
+
 std::unique_ptr<Executor> interruptible(std::unique_ptr<Executor> inner) {
   return std::make_unique<InterruptibleExecutor>(std::move(inner));
 }

@@ -53,6 +53,10 @@ class InterruptibleScope {
   Use use_;
 };
 
+/// InterruptibleScope::check() of the scope in use, if there is one: for work without loops on
+/// executors.
+void check_interruption();
+
 /// An executor that works like `inner`, with loops that an InterruptibleScope can end.
 std::unique_ptr<Executor> interruptible(std::unique_ptr<Executor> inner);
 

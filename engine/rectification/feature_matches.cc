@@ -14,6 +14,7 @@
 #include "engine/image/intensity_rows.h"
 #include "engine/io/opencv_setup.h"
 #include "engine/late_library.h"
+#include "scheduler/interruption.h"
 
 namespace vantage {
 namespace {
@@ -157,7 +158,9 @@ Features features_of(const SearchImage& image, const FeatureMatchOptions& option
           : cv::Ptr<cv::Feature2D>(cv::ORB::create(3 * options.max_features, 1.4F, 3, 15, 0, 2,
                                                    cv::ORB::FAST_SCORE, 31, kFastThreshold));
   Features features;
+  scheduler::check_interruption();
   detector->detect(image.levels, features.points);
+  scheduler::check_interruption();
   features.points = spread(std::move(features.points), image.levels.size(), options.max_features);
   if (!features.points.empty()) {
     detector->compute(image.levels, features.points, features.descriptors);
@@ -173,7 +176,9 @@ std::vector<cv::DMatch> mutual_matches(const Features& left, const Features& rig
   }
   const cv::BFMatcher matcher(kind == FeatureKind::kSift ? cv::NORM_L2 : cv::NORM_HAMMING);
   std::vector<std::vector<cv::DMatch>> nearest;
+  scheduler::check_interruption();
   matcher.knnMatch(left.descriptors, right.descriptors, nearest, 2);
+  scheduler::check_interruption();
   std::vector<cv::DMatch> back;
   matcher.match(right.descriptors, left.descriptors, back);
   std::vector<cv::DMatch> mutual;
@@ -221,6 +226,7 @@ std::vector<PointMatch> match_features(const Photograph& left, const Photograph&
   std::vector<std::uint8_t> found;
   std::vector<float> unused_errors;
   constexpr double kMinEigenvalue = 1e-4;  // OpenCV's default
+  scheduler::check_interruption();
   optical_flow()(left_image.contrast, right_image.contrast, left_points, refined, found,
                  unused_errors, cv::Size(kRefinementWindow_px, kRefinementWindow_px), 0,
                  cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 30, 1e-3),

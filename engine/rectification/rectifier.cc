@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "kernels/bicubic_remap/bicubic_remap.h"
+#include "scheduler/interruption.h"
 
 namespace vantage {
 
@@ -33,6 +34,7 @@ Rectifier::View Rectifier::make_view(const Camera& camera, Side side) const {
   view.x_px.resize(pair_.width_px, pair_.height_px);
   view.y_px.resize(pair_.width_px, pair_.height_px);
   for (int y = 0; y < pair_.height_px; ++y) {
+    scheduler::check_interruption();
     for (int x = 0; x < pair_.width_px; ++x) {
       const auto position = source_position(view, {x, y});
       view.x_px.at(x, y) = position ? static_cast<float>(position->x()) : kUnseen;

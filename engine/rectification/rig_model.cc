@@ -6,6 +6,8 @@
 #include <cmath>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "scheduler/interruption.h"
+
 namespace vantage {
 namespace {
 
@@ -70,6 +72,7 @@ struct Problem {
   [[nodiscard]] Eigen::Index inputs() const { return RigModel::kParameters; }
   [[nodiscard]] Eigen::Index values() const { return residuals + RigModel::kParameters; }
   int operator()(const Eigen::VectorXd& parameters, Eigen::VectorXd& values) const {
+    scheduler::check_interruption();
     values.head(residuals) = residuals_of(parameters);
     values.tail(RigModel::kParameters) = parameters;
     return 0;

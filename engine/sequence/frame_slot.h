@@ -51,10 +51,10 @@ struct FrameSlot {
   std::vector<ViewPose> view_poses;  ///< of `views`, as for new_view()
   Photograph preview;
   Photograph stereo;
-  Photograph depth;                     ///< see paint_depth()
-  std::optional<FrameComfort> comfort;  ///< if it is wanted
+  Photograph depth;                               ///< see paint_depth()
+  std::optional<FrameComfort> comfort;            ///< if it is wanted
   std::optional<DisparityQuantiles> disparities;  ///< of the reference's map, with kDepthResolution
-  std::vector<std::uint8_t> encoded;    ///< the file being written
+  std::vector<std::uint8_t> encoded;              ///< the file being written
   PendingFiles files;
   std::vector<FileRecord> file_records;  ///< of `files`
   std::vector<StageTime> times;          ///< of all steps except matching

@@ -192,17 +192,20 @@ bool FrameWorker::needs_views(const FrameSlot& slot) const {
   return slot.stored == nullptr || videos_show_views_ || options_.measure_flicker;
 }
 
-void FrameWorker::match(FrameSlot& slot, const StereoMatcher& matcher) {
+MatchRequest FrameWorker::request() const {
   const bool right_is_primary = options_.match.reference == Side::kRight;
   const bool both = !options_.views.empty() || options_.saves(SequenceOutput::kStereo) ||
                     options_.saves(SequenceOutput::kRightDisparity) ||
-                    options_.saves(SequenceOutput::kRightUnmatched);
-  MatchRequest request{
-      .left = !right_is_primary || both,
-      .right = right_is_primary || both,
-      .confidence = options_.saves(SequenceOutput::kConfidence) ||
-                    (options_.saves_points() && options_.cloud.reads_confidence())};
-  request.left = request.left || options_.saves_cyclopean();
+                    options_.saves(SequenceOutput::kRightUnmatched) ||
+                    options_.temporal.weight > 0;  // both are stored for the next frame
+  return {.left = !right_is_primary || both || options_.saves_cyclopean(),
+          .right = right_is_primary || both,
+          .confidence = options_.saves(SequenceOutput::kConfidence) ||
+                        (options_.saves_points() && options_.cloud.reads_confidence())};
+}
+
+void FrameWorker::match(FrameSlot& slot, const StereoMatcher& matcher) {
+  MatchRequest request = this->request();
   const VolumeRequest posterior{.side = options_.match.reference, .sink = &slot.posterior};
   if (options_.saves_posterior()) {
     request.volumes = {&posterior, 1};
@@ -259,7 +262,6 @@ void FrameWorker::match_with_prior(FrameSlot& slot, const StereoMatcher& matcher
   if (is_first) {
     temporal_.restart();
   }
-  request.left = request.right = true;  // both are stored for the next frame
   request.prior = temporal_.priors_for(*slot.left, *slot.right, execution_);
   match_images(slot, matcher, request);
   temporal_.remember(*slot.left, *slot.right, slot.maps, execution_);
@@ -334,15 +336,18 @@ void FrameWorker::synthesize(FrameSlot& slot) const {
   }
 }
 
+PreviewRange FrameWorker::preview_range_of_frame(int frame) const {
+  return options_.preview_range_per_shot
+             ? shots_->shot_of(frame).preview_range
+             : preview_range_of(searched_in_all(options_.match.disparities, shots_));
+}
+
 void FrameWorker::paint_preview(FrameSlot& slot) const {
   if (!wants(slot, SequenceOutput::kPreview)) {
     return;
   }
   const TimedStep step(slot, "preview", accounts_.of(RunStep::kPictures));
-  const PreviewRange range =
-      options_.preview_range_per_shot
-          ? shots_->shot_of(slot.frame).preview_range
-          : preview_range_of(searched_in_all(options_.match.disparities, shots_));
+  const PreviewRange range = preview_range_of_frame(slot.frame);
   slot.preview.pixels = colour_preview(primary_map(slot).view(), range.min_px, range.max_px);
 }
 

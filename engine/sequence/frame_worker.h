@@ -77,6 +77,16 @@ class FrameWorker {
     use.add("frame before", reuse_.held_bytes());
   }
 
+  /// What is matched of a frame.
+  [[nodiscard]] MatchRequest request() const;
+  /// The disparities that a frame is searched in.
+  [[nodiscard]] DisparityRange searched_in(int frame) const {
+    return matchers_.of(frame)->options.disparities;
+  }
+  /// The disparities of the first and the last colour of its preview.
+  [[nodiscard]] PreviewRange preview_range_of_frame(int frame) const;
+  /// Of the points of a frame; needs the camera of the maps.
+  [[nodiscard]] MapCamera point_camera(const FrameSlot& slot) const;
   /// The reference's map.
   [[nodiscard]] const DisparityMap& primary_map(const FrameSlot& slot) const;
   /// Copies the picture of the frame in `stream` (not of floats) to `picture`, whose memory is
@@ -108,8 +118,6 @@ class FrameWorker {
   void measure_disparities_of(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
   [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
-  /// Of the points of a frame.
-  [[nodiscard]] MapCamera point_camera(const FrameSlot& slot) const;
   /// Writes a depth map, a map of depth resolutions, a cloud or mesh to the slot's `encoded`.
   void encode_metric(FrameSlot& slot, const OutputStream& stream,
                      const std::filesystem::path& path) const;

@@ -13,8 +13,8 @@
 #include "engine/error.h"
 #include "engine/sequence/commit_queue.h"
 #include "engine/sequence/delivered_frames.h"
-#include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_feed.h"
+#include "engine/sequence/frame_flicker.h"
 #include "engine/sequence/frame_memory.h"
 #include "engine/sequence/frame_worker.h"
 #include "engine/sequence/leftovers.h"
@@ -70,7 +70,7 @@ class Run {
         feed_(std::move(work)),
         stored_(std::move(stored)),
         segments_(options, layout, worker_, run.frame_size.value_or(ImageExtent()), execution),
-        flicker_(options.temporal.threshold),
+        flicker_(options, execution),
         slots_(static_cast<std::size_t>(run.in_flight)),
         queue_(
             journal, [this](int frames, double cells) { tell_progress(frames, cells); },
@@ -153,7 +153,7 @@ class Run {
     FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_records)};
     record.comfort = slot.comfort;
     record.disparities = slot.disparities;
-    measure_flicker(slot, record);
+    record.flicker = flicker_.add(slot);
     if (slot.is_lead_in) {
       return;
     }
@@ -186,23 +186,6 @@ class Run {
     record.remarks = {"the input ends before it, although its container lists it"};
     report_.remarks.push_back({slot.frame, record.remarks.front()});
     deliver(slot.frame, {}, std::move(record), 0);
-  }
-
-  /// Compares with the frame before it in its chunk.
-  void measure_flicker(const FrameSlot& slot, FrameRecord& record) {
-    if (!options_.measure_flicker) {
-      return;
-    }
-    if (slot.frame != next_flicker_frame_ || slot.frame % options_.chunk_frames == 0) {
-      flicker_.restart();
-    }
-    next_flicker_frame_ = slot.frame + 1;
-    std::vector<ViewOfFrame> views;
-    for (std::size_t view = 0; view < options_.views.size(); ++view) {
-      views.push_back({slot.view_poses[view], &slot.views[view].image});
-    }
-    record.flicker =
-        flicker_.add(*slot.left, slot.maps.left.disparity_px.view(), views, execution_);
   }
 
   void note_oddities(FrameSlot& slot, FrameRecord& record) {
@@ -355,8 +338,7 @@ class Run {
   std::optional<int> segment_begin_;  // start of the unfinished segment
   int last_delivered_ = -1;
   ShotCuts cuts_;  // of a stream
-  FlickerMeter flicker_;
-  int next_flicker_frame_ = -1;
+  FrameFlicker flicker_;
   int last_frame_ = -2;
   std::array<std::uint64_t, 2> last_content_ = {};
   SequenceReport report_;

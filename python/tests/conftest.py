@@ -3,6 +3,7 @@
 import os
 import subprocess
 
+import cv2
 import numpy as np
 import pytest
 
@@ -43,15 +44,32 @@ def truth(scene):
     return vantage.read_disparity(scene / "left-disparity.pfm")
 
 
-@pytest.fixture(scope="session")
-def sequence(tmp_path_factory):
-    """Folder of four pairs: left/000000.png …"""
-    folder = tmp_path_factory.mktemp("sequence")
-    run_program("generate", "scene", "-o", folder, "--frames", 4, "--width", 96, "--height", 64,
-                "--quiet")
-    return folder
-
-
 def same(first, second):
     """Equal bit for bit, NaN included."""
     return first.dtype == second.dtype and np.array_equal(first, second, equal_nan=True)
+
+
+def unrectified_pair():
+    """Grey, 160x120: steps at disparities 4 to 20, the right image two rows lower."""
+    rows, columns = np.indices((120, 160), np.float32)
+    texture = cv2.GaussianBlur(np.random.default_rng(1).integers(0, 256, (120, 240), np.uint8),
+                               (0, 0), 1)
+    shift = 4 + 8 * ((columns // 60 + rows // 60) % 3)
+    return (cv2.remap(texture, columns + 40 - shift / 2, rows, cv2.INTER_LINEAR),
+            cv2.remap(texture, columns + 40 + shift / 2, rows + 2, cv2.INTER_LINEAR))
+
+
+def words(options, prefix=""):
+    """Options as the command line has them."""
+    found = []
+    for name, value in options.items():
+        name = f"--{prefix}{name.replace('_', '-')}"
+        if value is True:
+            found.append(name)
+        elif isinstance(value, list):
+            found.append(f"{name}={','.join(map(str, value))}")
+        elif isinstance(value, tuple):
+            found.append(f"{name}={':'.join(map(str, value))}")
+        elif value is not None:
+            found.append(f"{name}={value}")
+    return found

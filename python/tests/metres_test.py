@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import run_program, same
+from conftest import run_program, same, words
 
 import vantage
 
@@ -19,15 +19,6 @@ def calibration(scene):
     return vantage.Calibration.load(scene / "calib.txt")
 
 
-def arguments_of(options):
-    for name, value in options.items():
-        name = f"--{name.replace('_', '-')}"
-        if value is True:
-            yield name
-        else:
-            yield f"{name}={','.join(map(str, value)) if isinstance(value, tuple) else value}"
-
-
 @pytest.mark.parametrize("options", [
     {},
     {"cloud_step": 3, "max_depth": 1.5, "cloud_outlines": True},
@@ -38,7 +29,7 @@ def test_files_are_those_of_the_program(scene, result, calibration, tmp_path, op
     files = {name: tmp_path / name for name in ["depth.png", "depth.npy", "cloud.ply", "mesh.ply"]}
     arguments = ["match", scene / "left.png", scene / "right.png", "-o", tmp_path / "map.npy",
                  "--disparities", "0:15", "--calibration", scene / "calib.txt", "--no-tuning",
-                 *arguments_of(options)]
+                 *words(options)]
     run_program(*arguments, "--depth", files["depth.npy"], "--cloud", files["cloud.ply"], "--mesh",
                 files["mesh.ply"])
     cloud = result.cloud(calibration, **options)
@@ -61,10 +52,10 @@ def test_files_are_those_of_the_program(scene, result, calibration, tmp_path, op
 
 @pytest.mark.parametrize("reference", ["left", "right"])
 def test_rig_without_calibration(scene, pair, tmp_path, reference):
-    rig = {"focal_length": 150, "baseline": 25, "doffs": 2.7, "principal_point": (70, 61.5)}
+    rig = {"focal_length": 150, "baseline": 25, "doffs": 2.7, "principal_point": [70, 61.5]}
     run_program("match", scene / "left.png", scene / "right.png", "-o", tmp_path / "map.npy",
                 "--disparities", "0:15", "--reference", reference, "--no-tuning",
-                *arguments_of(rig), "--depth", tmp_path / "depth.png", "--cloud",
+                *words(rig), "--depth", tmp_path / "depth.png", "--cloud",
                 tmp_path / "cloud.ply", "--depth-resolution", tmp_path / "resolution.npy",
                 "--unmatched", tmp_path / "mask.png")
     result = vantage.Matcher(**RANGE, reference=reference)(*pair)

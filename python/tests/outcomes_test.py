@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from conftest import run_program, same
+from conftest import run_program, same, words
 
 import vantage
 
@@ -30,9 +30,7 @@ def line_files(line, tmp_path_factory):
                                      {**RANGE, "method": "bayes"}], ids=str)
 def test_several_images(line, line_files, options):
     folder, files = line_files
-    arguments = [f"--{name}={':'.join(map(str, value)) if isinstance(value, tuple) else value}"
-                 for name, value in options.items()]
-    run_program("match", *files, "--baselines=1,-1.5", *arguments, "-o", folder / "map.npy",
+    run_program("match", *files, "--baselines=1,-1.5", *words(options), "-o", folder / "map.npy",
                 "--confidence", folder / "confidence.npy")
     result = vantage.Matcher(**options).compute(line[0], line[1], more=[line[2]],
                                                 baselines=[1, -1.5])
@@ -70,14 +68,9 @@ def test_several_images_of_bad_input(line, matcher, arguments, message):
     ({"method": "ssd", "disparities_y": (-1, 1)}, {"rows": (50, 52)}),
 ], ids=str)
 def test_volumes_are_those_of_the_program(scene, pair, tmp_path, options, wanted):
-    def words(options, prefix):
-        return [f"--{prefix}{name.replace('_', '-')}="
-                f"{':'.join(map(str, value)) if isinstance(value, tuple) else value}"
-                for name, value in options.items()]
-
     run_program("match", scene / "left.png", scene / "right.png", "--disparities", "0:15", "-o",
                 tmp_path / ("map.flo" if "disparities_y" in options else "map.npy"), "--volume",
-                tmp_path / "volume.npy", *words(options, ""), *words(wanted, "volume-"),
+                tmp_path / "volume.npy", *words(options), *words(wanted, "volume-"),
                 "--no-tuning")
     volume = vantage.Matcher(**RANGE, **options).volume(*pair, **wanted)
     assert same(volume.values, np.load(tmp_path / "volume.npy"))

@@ -8,8 +8,9 @@ import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 
+import cv2
 import numpy as np
-from conftest import same
+from conftest import same, unrectified_pair
 
 import vantage
 
@@ -81,8 +82,32 @@ def test_ctrl_c_interrupts():
     assert time.monotonic() - start < 10
 
 
+def test_signals_interrupt_estimating_cameras():
+    left, right = unrectified_pair()
+
+    def rectify_seconds():
+        start = time.process_time()
+        try:
+            vantage.rectify(left, right)
+        except InterruptedError:
+            pass
+        return time.process_time() - start
+
+    def interrupt(*_):
+        raise InterruptedError
+
+    whole = rectify_seconds()
+    before = signal.signal(signal.SIGPROF, interrupt)
+    try:
+        for share in [0.1, 0.5]:  # in features, in cameras
+            signal.setitimer(signal.ITIMER_PROF, share * whole)
+            assert rectify_seconds() < (share + 0.35) * whole
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
 def test_cv2_keeps_its_settings(scene):
-    import cv2
     cv2.setNumThreads(3)
     vantage.read_image(scene / "left.png")
     vantage.rectify(*(vantage.read_image(scene / f"{side}.png") for side in ["left", "right"]),

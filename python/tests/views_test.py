@@ -1,9 +1,9 @@
-"""Views, rectification, points, sequences, and OpenCV's interface."""
+"""Views, rectification, points, and OpenCV's interface."""
 
 import cv2
 import numpy as np
 import pytest
-from conftest import run_program, same
+from conftest import run_program, same, unrectified_pair
 
 import vantage
 import vantage.opencv
@@ -96,12 +96,7 @@ def test_rectification_is_that_of_the_program(scene, pair, tmp_path):
 
 
 def test_rectification_without_cameras():
-    rng = np.random.default_rng(1)
-    texture = cv2.GaussianBlur(rng.integers(0, 256, (240, 400), np.uint8), (0, 0), 1)
-    rows, columns = np.indices((240, 320), np.float32)
-    shift = 4 + 8 * ((columns // 60 + rows // 60) % 3)
-    left = cv2.remap(texture, columns + 40 - shift / 2, rows, cv2.INTER_LINEAR)
-    right = cv2.remap(texture, columns + 40 + shift / 2, rows + 2, cv2.INTER_LINEAR)
+    left, right = unrectified_pair()
     rectified = vantage.rectify(left, right)
     assert rectified.row_error_px < 0.5
     assert rectified.left.shape == left.shape and rectified.calibration.rectified
@@ -140,28 +135,6 @@ def test_points(scene, truth):
         vantage.reproject(truth, tilted(scene))
     with pytest.raises(vantage.Error, match="missing.yml"):
         vantage.Calibration.load("missing.yml")
-
-
-def test_sequence_has_the_maps_of_a_run(sequence, tmp_path):
-    run_program("run", "--left", sequence / "left", "--right", sequence / "right", "-o",
-                tmp_path / "run", "--format", "npy")
-    frames = vantage.Sequence(sequence / "left", sequence / "right")
-    assert len(frames) == 4
-    for frame in frames:
-        expected = np.load(tmp_path / f"run/disparity/{frame.index:06}.npy")
-        assert same(frame.disparity, expected)
-        assert f"{frame.index:06}.png" in frame.name
-        assert same(frame.left, vantage.read_image(sequence / f"left/{frame.index:06}.png"))
-        assert frame.result.right_disparity.shape == expected.shape
-    some = vantage.Sequence(sequence / "left", sequence / "right", frames=slice(1, None, 2),
-                            disparities=(0, 7))
-    assert [frame.index for frame in some] == [1, 3] == [frame.index for frame in some]
-    with pytest.raises(ValueError, match="expected numbers from 0 to 3"):
-        vantage.Sequence(sequence / "left", sequence / "right", frames=range(9))
-    with pytest.raises(vantage.Error, match="missing"):
-        vantage.Sequence(sequence / "missing", sequence / "right")
-    with pytest.raises(ValueError, match="--stereo|--left|stereo"):
-        vantage.Sequence()
 
 
 def test_interface_of_opencv(scene):

@@ -11,6 +11,9 @@ options vantage.UsageError, which is a ValueError, too; each is one line. Calls 
 share one pool of threads; Ctrl-C interrupts them. docs/python.md is a tutorial.
 """
 
+import atexit as _atexit
+import weakref as _weakref
+
 import numpy as _np
 
 from vantage import _vantage
@@ -23,6 +26,9 @@ __all__ = [
     "depth_resolution", "mesh", "read_disparity", "read_image", "rectify", "reproject",
     "synthesize", "write_cloud", "write_depth", "write_disparity", "write_image", "write_mesh",
 ]
+
+
+_loops = _weakref.WeakSet()
 
 
 class Matcher:
@@ -243,15 +249,33 @@ def mesh(disparity, image, calibration=None, *, unmatched=None, confidence=None,
 
 
 class Frame:
-    """A pair of a Sequence: index, name, left and right (RGB, rectified) and result, a MatchResult.
+    """A frame of a Sequence.
+
+    index, name: of the pair in its source. left, right: arrays, RGB, rectified.
+    result: MatchResult; with a calibration or rig of known scale its depth(), cloud() and mesh()
+    need no argument, and with poses their points are in the world.
+    views, holes, sources: lists with an array for each new view: like left; bool, where no image
+    shows it; uint8: 85 from the left image, 170 from the right one, 255 from both, 0 neither.
+    stereo: the stereo picture with save=["stereo"], else None.
+    flicker: with measure_flicker a dict of the changes since the frame before, else None.
+    share_reused: with reuse the share of the maps taken from the frame before, else None.
+    remarks: list of texts.
     """
 
-    def __init__(self, index, name, left, right, result):
+    def __init__(self, index, name, left, right, result, views, holes, sources, stereo, flicker,
+                 share_reused, remarks):
         self.index = index
         self.name = name
         self.left = left
         self.right = right
         self.result = result
+        self.views = views
+        self.holes = holes
+        self.sources = sources
+        self.stereo = stereo
+        self.flicker = flicker
+        self.share_reused = share_reused
+        self.remarks = remarks
 
     @property
     def disparity(self):
@@ -263,46 +287,81 @@ class Frame:
 
 
 class Sequence:
-    """The frames of a run: pairs of a sequence, matched one after the other.
+    """The frames of a run, matched ahead of the loop that takes them: for frame in Sequence(...).
 
-    options: inputs as for `vantage run` (left and right, stereo and packing, pairs, or sequence and
-    step; offset), and those of Matcher. disparities="auto" is the range of the whole sequence.
-    frames: range or slice of the pairs to go through; default all.
-    calibration: Calibration or a path, to rectify the pairs first.
+    left, right, options: inputs as for `vantage run` (left and right, more and baselines; stereo and
+    packing; pairs; sequence and step; offset, every), those of Matcher, and those that concern
+    frames: temporal_prior, temporal_threshold, reuse, measure_flicker, chunk_frames,
+    search_range="shot", preview_range="shot", intensity_fit="shot"; view, view_path, pose, path,
+    look_at and how views are made; stereo_views, stereo_packing; keep_going.
+    disparities="auto" is the range of the whole sequence.
+    save: what to compute of each frame, by the names of `vantage run --save`; default the maps of
+    the reference, and the views if there are any. Other maps are computed when they are asked for,
+    unless they depend on other frames.
+    frames: range or slice of the pairs to go through, increasing, or "A-B" or "A-B:N" as for run;
+    default all.
+    calibration: Calibration or a path, to rectify the pairs first. baseline, focal_length, doffs,
+    principal_point, calibration_unit: of results in metres, as for `vantage run`. poses: file of a
+    trajectory.
+    in_flight: frames that are computed ahead or wait, 1 to 64; default: threads + 2.
 
-    Iterating starts at the first frame each time. Maps are those that `vantage run` writes without
-    its temporal options. For thousands of frames use `vantage run`: it keeps several in flight and
-    can be resumed.
+    Maps are those that `vantage run` writes. Frames are read, matched and rendered in other threads
+    while the loop works. Leaving the loop, an exception in it or Ctrl-C ends them. Iterating starts
+    at the first frame each time. Raises Error at the first bad frame, after all frames before it;
+    with keep_going it is left out.
+
+    After a loop, skipped is a list of (index, reason) of the frames left out, and flicker the
+    changes of all frames, as the report of `vantage run` has them (None: not measured).
     """
 
-    def __init__(self, left=None, right=None, *, frames=None, calibration=None, kept_outline=0.0,
-                 preset=None, disparities="auto", **options):
+    def __init__(self, left=None, right=None, *, frames=None, calibration=None, preset=None,
+                 disparities="auto", save=None, **options):
+        if save is not None:
+            names = save.split(",") if isinstance(save, str) else save
+            options["save"] = [name.replace("_", "-") for name in names]
+        if isinstance(frames, str):
+            options["frames"] = frames
         self._native = _vantage.Sequence(
-            _calibration_of(calibration), kept_outline,
+            _calibration_of(calibration),
             {"left": left, "right": right, "preset": preset, "disparities": disparities,
              **options})
+        self._frames = self._chosen(frames)
+        self.skipped = []
+        self.flicker = None
+
+    def _chosen(self, frames):
         count = len(self._native)
-        if frames is None:
-            frames = slice(None)
+        if frames is None or isinstance(frames, str):
+            return range(*self._native.selected())
         if not isinstance(frames, (slice, range)):
             raise UsageError(f"frames is {frames!r}, expected a range or a slice")
-        self._frames = range(count)[frames] if isinstance(frames, slice) else frames
-        if self._frames and not (0 <= min(self._frames) and max(self._frames) < count):
+        chosen = range(count)[frames] if isinstance(frames, slice) else frames
+        if chosen and not (0 <= min(chosen) and max(chosen) < count):
             raise UsageError(f"frames is {frames!r}, expected numbers from 0 to {count - 1}")
+        if chosen.step < 0:
+            raise UsageError(f"frames is {frames!r}, expected increasing numbers")
+        return chosen
 
     def __len__(self):
         return len(self._frames)
 
     def __iter__(self):
-        at = None
-        for index in self._frames:
-            if index != at:
-                self._native.skip_to(index)
-            found = self._native.next()
-            if found is None:  # the source is shorter than its header says
-                return
-            at = index + 1
-            yield Frame(*found)
+        loop = self._native.loop(list(self._frames))
+        _loops.add(loop)
+        try:
+            while (found := loop.next()) is not None:
+                yield Frame(**found)
+        finally:
+            loop.close()
+            self.skipped = loop.skipped()
+            self.flicker = loop.flicker()
+
+
+@_atexit.register
+def _end_loops():
+    """Threads of loops that nobody has left must not outlive what they use."""
+    for loop in list(_loops):
+        loop.close()
 
 
 def read_image(path, *, bgr=False):

@@ -188,15 +188,23 @@ class Frame:
     left: NDArray[Any]
     right: NDArray[Any]
     result: MatchResult
+    views: list[NDArray[Any]]
+    holes: list[NDArray[np.bool_]]
+    sources: list[NDArray[np.uint8]]
+    stereo: NDArray[Any] | None
+    flicker: dict[str, Any] | None
+    share_reused: float | None
+    remarks: list[str]
     @property
     def disparity(self) -> NDArray[np.float32]: ...
 
 class Sequence:
+    skipped: list[tuple[int, str]]
+    flicker: dict[str, Any] | None
     def __init__(
         self, left: _Path | None = ..., right: _Path | None = ..., *,
-        frames: range | slice | None = ..., calibration: _Rig = ...,
-        kept_outline: float = ..., preset: _Preset = ..., disparities: _Range = ...,
-        **options: Any
+        frames: range | slice | str | None = ..., calibration: _Rig = ..., preset: _Preset = ...,
+        disparities: _Range = ..., save: str | _Sequence[str] | None = ..., **options: Any
     ) -> None: ...
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[Frame]: ...

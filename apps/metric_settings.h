@@ -8,6 +8,10 @@
 
 namespace vantage::apps {
 
+/// --disparity-resolution, in the present group, and its check, which throws UsageError.
+void add_disparity_resolution_setting(Settings& settings, std::optional<double>& step_px);
+void require_disparity_resolution(const std::optional<double>& step_px);
+
 /// --max-depth.
 void add_max_depth_setting(Settings& settings, std::optional<double>& max_depth_m);
 /// That, and which pixels become points.

@@ -1,10 +1,29 @@
-#include "apps/cloud_settings.h"
+#include "apps/metric_settings.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "engine/error.h"
 
 namespace vantage::apps {
 
 void add_max_depth_setting(Settings& settings, std::optional<double>& max_depth_m) {
   settings.number("max-depth", max_depth_m, "METRES",
                   "Depths beyond are unknown; auto: no limit, 65.535 in PNG");
+}
+
+void add_disparity_resolution_setting(Settings& settings, std::optional<double>& step_px) {
+  settings.number("disparity-resolution", step_px, "PX",
+                  "Difference of disparities that can be told apart, for --depth-resolution; auto: "
+                  "0.1, or 1 with --subpixel none");
+}
+
+void require_disparity_resolution(const std::optional<double>& step_px) {
+  if (step_px && !(*step_px > 0 && std::isfinite(*step_px))) {
+    throw UsageError(
+        fmt::format("disparity-resolution is {}, expected a number above 0", *step_px));
+  }
 }
 
 void add_cloud_settings(Settings& settings, CloudOptions& options) {

@@ -1,0 +1,128 @@
+#include "apps/sequence_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "apps/frame_step_setting.h"
+#include "engine/error.h"
+
+namespace vantage::apps {
+namespace {
+
+/// Any frame shows the shape of all frames; the run itself reports a bad one at the start.
+constexpr int kFramesTried = 100;
+
+PairShape shape_of(const Photograph& photograph) {
+  return {.source = {photograph.width(), photograph.height()},
+          .channels = photograph.channels(),
+          .bytes_per_value =
+              std::visit([](const auto& image) { return static_cast<int>(sizeof(*image.row(0))); },
+                         photograph.pixels)};
+}
+
+}  // namespace
+
+void SequenceSession::rectify(FramePair& pair, Execution& pool) const {
+  if (!rectifier) {
+    return;
+  }
+  Photograph rectified;
+  rectifier->apply(pair.left, Side::kLeft, rectified, pool);
+  std::swap(pair.left, rectified);
+  rectifier->apply(pair.right, Side::kRight, rectified, pool);
+  std::swap(pair.right, rectified);
+}
+
+SequenceRun SequenceSession::run(const SequenceJob& job, PairSource& source, const ShotTable* shots,
+                                 int in_flight) const {
+  // Pairs of a list may be unrelated.
+  const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
+                        !job.sequence.temporal.uses_past() && !shape.cameras && !map_camera;
+  return {.pairs = source,
+          .selection = selection,
+          .frame_size = any_size ? std::nullopt : std::optional(shape.source),
+          .rectifier = rectifier ? &*rectifier : nullptr,
+          .cameras = shape.cameras ? &*shape.cameras : nullptr,
+          .map_camera = map_camera ? &*map_camera : nullptr,
+          .poses = poses ? &*poses : nullptr,
+          .shots = shots,
+          .in_flight = in_flight,
+          .keep_going = job.keep_going,
+          .on_progress = {},
+          .stop = nullptr};
+}
+
+void read_first_pair(PairSource& pairs, FramePair& pair) {
+  const int tries = std::min(kFramesTried, pairs.pair_count());
+  for (int index = 0; index < tries; ++index) {
+    try {
+      pairs.skip_to(index);
+      if (pairs.fetch(pair)) {
+        pairs.decode(pair);
+        pairs.skip_to(0);
+        return;
+      }
+    } catch (const Error& error) {
+      if (index + 1 == tries) {
+        throw Error(fmt::format("none of the first {} frames can be read; the last error is: {}",
+                                tries, error.what()));
+      }
+    }
+  }
+  throw Error("the sequence has no pair of frames");
+}
+
+std::optional<FrameRange> selected_pairs(const SequenceJob& job, const PairSource& pairs) {
+  return job.frames ? std::optional(pairs.pairs_of(*job.frames)) : std::nullopt;
+}
+
+void open_source(const SequenceJob& job, SequenceSession& session) {
+  session.pairs = open_pair_source(job.input);
+  session.selection = {.frame_count = session.pairs->pair_count(),
+                       .chunk_frames = job.sequence.chunk_frames,
+                       .frames = selected_pairs(job, *session.pairs),
+                       .shard = std::nullopt};
+  if (job.frames && session.selection.all().empty()) {
+    throw Error(job.input.every.takes_all()
+                    ? fmt::format("--frames starts at {} but the input has {} frames (0 to {})",
+                                  job.frames->first, session.selection.frame_count,
+                                  session.selection.frame_count - 1)
+                    : fmt::format("--frames {}-{} has none of the {} frames that --every {} takes",
+                                  job.frames->first, job.frames->end - 1,
+                                  session.selection.frame_count, to_text(job.input.every)));
+  }
+}
+
+void prepare_pairs(const SequenceJob& job, const std::optional<StereoCalibration>& calibration,
+                   bool is_metric, FramePair& first, Execution& execution,
+                   SequenceSession& session) {
+  session.shape = shape_of(first.left);
+  session.shape.is_video = !session.pairs->sound().file.empty();
+  session.shape.frames_kept = session.pairs->frames_kept();
+  session.shape.pair_count = session.pairs->pair_count();
+  if (calibration) {
+    Rectifier rectifier(*calibration, first.left.width(), first.left.height(), job.rectification);
+    session.shape.cameras = rectifier.pair();
+    if (is_metric) {
+      session.map_camera = map_camera(rectifier.pair(), job.sequence.match.reference,
+                                      job.rig.required_unit_of(*calibration));
+    }
+    if (rectifier.needs_rectification()) {
+      session.rectifier.emplace(std::move(rectifier));
+      session.shape.is_rectified_here = true;
+      session.rectify(first, execution);
+    }
+  }
+  if (!job.poses.empty()) {
+    session.poses.emplace(read_trajectory(job.poses), job.poses);
+  }
+  if (!calibration && is_metric) {
+    session.map_camera = job.rig.camera(first.left.width(), first.left.height(),
+                                        job.sequence.match.reference, false);
+  }
+}
+
+}  // namespace vantage::apps

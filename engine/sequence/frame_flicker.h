@@ -1,0 +1,26 @@
+#pragma once
+
+#include "engine/sequence/flicker.h"
+#include "engine/sequence/frame_slot.h"
+#include "engine/sequence/sequence_options.h"
+
+namespace vantage {
+
+/// Compares each frame with the one before it in its chunk. Thread rule: one call at a time.
+class FrameFlicker {
+ public:
+  /// Both must outlive it.
+  FrameFlicker(const SequenceOptions& options, Execution& execution)
+      : options_(options), execution_(execution), meter_(options.temporal.threshold) {}
+
+  /// All 0 unless options.measure_flicker, and for a frame without its predecessor.
+  FlickerSums add(const FrameSlot& slot);
+
+ private:
+  const SequenceOptions& options_;
+  Execution& execution_;
+  FlickerMeter meter_;
+  int next_frame_ = -1;
+};
+
+}  // namespace vantage

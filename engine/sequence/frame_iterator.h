@@ -1,0 +1,56 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/io/preview.h"
+#include "engine/reprojection/map_camera.h"
+#include "engine/sequence/flicker.h"
+#include "engine/sequence/frame_slot.h"
+#include "engine/sequence/sequence_runner.h"
+
+namespace vantage {
+
+/// A frame of a sequence with its maps and pictures.
+struct ComputedFrame {
+  std::unique_ptr<FrameSlot> slot;  ///< its files are not made
+  DisparityRange searched;          ///< its range of disparities
+  PreviewRange preview;             ///< the colours of its previews
+  bool has_both_maps = false;
+  std::optional<MapCamera> camera = std::nullopt;  ///< of its map, if the run has one
+  FlickerSums flicker = {};                        ///< see FrameFlicker
+};
+
+/// The frames of a sequence, one after the other, as SequenceRunner makes them, for a caller in the
+/// same process. A thread of its own computes them ahead: the frames that are being computed and
+/// those that wait for the caller are together at most `run.in_flight`, in the threads of the
+/// execution. No thread of that waits for the caller.
+///
+/// Thread rule: one call at a time. Frames are identical for any Execution and in-flight count.
+class FrameIterator {
+ public:
+  /// `frames`: numbers of pairs, increasing; frames that they depend on are computed, too. Options
+  /// must be valid. What options, run and execution refer to must outlive the iterator; `run.stop`
+  /// and `run.on_progress` are not used.
+  FrameIterator(const SequenceOptions& options, const SequenceRun& run,
+                const std::vector<int>& frames, Execution& execution);
+  FrameIterator(const FrameIterator&) = delete;
+  FrameIterator& operator=(const FrameIterator&) = delete;
+  /// Drops the frames that were computed ahead; those in work end early.
+  ~FrameIterator();
+
+  /// The next frame, empty at the end. Throws Error that names the frame at the first bad one,
+  /// after all frames before it, unless `run.keep_going`; then there are no more frames. An
+  /// InterruptibleScope ends the wait.
+  std::optional<ComputedFrame> next();
+  /// Frames that were left out so far, with `run.keep_going`.
+  [[nodiscard]] std::vector<FrameRemark> skipped() const;
+
+ private:
+  class Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace vantage
