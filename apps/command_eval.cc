@@ -58,16 +58,10 @@ void add_eval_settings(Settings& settings, EvalJob& job) {
                    "Number of rows and columns to leave out at each side");
 }
 
-void require_positive(const char* option, const std::optional<double>& scale) {
-  if (scale && !(*scale > 0)) {
-    throw UsageError(fmt::format("{} is {}, expected a number above 0", option, *scale));
-  }
-}
-
 void check(const EvalJob& job, const Settings& settings) {
   job.common.execution.validate();
-  require_positive("--scale", job.truth_scale);
-  require_positive("--disparity-scale", job.disparity_scale);
+  require_above_0("scale", job.truth_scale);
+  require_above_0("disparity-scale", job.disparity_scale);
   if (job.ignore_border_px < 0) {
     throw UsageError(
         fmt::format("--ignore-border is {}, expected at least 0", job.ignore_border_px));

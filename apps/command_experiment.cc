@@ -105,13 +105,7 @@ void add_experiment_settings(Settings& settings, ExperimentJob& job) {
            fmt::format("Synthetic pairs: {}", fmt::join(kBookPairNames, ", ")),
            [](const SettingValue& value) { return to_text(value); });
   Setting& seed = settings.add("seed", "N", "Seed of the generated images; auto: the figure's");
-  seed.set = [&job](const SettingValue& value) {
-    const int number = to_integer(value);
-    if (number < 0) {
-      reject_value(value, "a whole number of at least 0");
-    }
-    job.settings.seed = static_cast<std::uint64_t>(number);
-  };
+  seed.set = [&job](const SettingValue& value) { job.settings.seed = to_seed(value); };
   seed.get = [&job]() -> SettingValue {
     return job.settings.seed ? SettingValue(*job.settings.seed) : SettingValue("auto");
   };

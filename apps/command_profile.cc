@@ -106,10 +106,7 @@ void check(const ProfileJob& job) {
     throw UsageError(
         fmt::format("--runs is {}, expected a number from 1 to {}", job.rounds.rounds, kMaxRuns));
   }
-  if (job.rounds.budget_s && !(*job.rounds.budget_s > 0)) {
-    throw UsageError(
-        fmt::format("--budget is {}, expected a number above 0", *job.rounds.budget_s));
-  }
+  require_above_0("budget", job.rounds.budget_s);
   if (!job.against.empty() && resolved(job.against) == resolved(path_of_this_program())) {
     throw UsageError("--against is this program itself, expected another one");
   }

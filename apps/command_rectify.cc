@@ -90,9 +90,7 @@ void check(const RectifyJob& job) {
     throw UsageError(fmt::format("--sample-pairs is {}, expected a number from 1 to {}",
                                  job.sample_pairs, kMaxSamplePairs));
   }
-  if (job.baseline_m && !(*job.baseline_m > 0 && std::isfinite(*job.baseline_m))) {
-    throw UsageError(fmt::format("--baseline is {}, expected a number above 0", *job.baseline_m));
-  }
+  require_above_0("baseline", job.baseline_m);
   if (job.output.empty() && job.matrices.empty() && job.valid_mask.empty()) {
     throw UsageError(
         "there is nothing to write, expected at least one of --output, --matrices and "

@@ -27,7 +27,7 @@ struct ReprojectJob {
   std::string unmatched;
   std::string confidence;
   std::optional<double> disparity_scale;
-  MatchOptions reference;  ///< only its reference is used
+  Side reference = Side::kLeft;
   std::string calibration;
   RectificationOptions rectification;
   RigScale rig;
@@ -64,10 +64,7 @@ void check(const ReprojectJob& job, const Settings& settings) {
   job.common.execution.validate();
   job.rig.validate(job.calibration);
   job.rectification.validate();
-  if (job.disparity_scale && !(*job.disparity_scale > 0)) {
-    throw UsageError(
-        fmt::format("--disparity-scale is {}, expected a number above 0", *job.disparity_scale));
-  }
+  require_above_0("disparity-scale", job.disparity_scale);
   if (!job.outputs.any()) {
     throw UsageError(
         "there is nothing to write, expected at least one of --depth, --cloud and --mesh");
@@ -98,12 +95,11 @@ void check(const ReprojectJob& job, const Settings& settings) {
 }
 
 MapCamera camera_of(const ReprojectJob& job, int width_px, int height_px) {
-  const Side side = job.reference.reference;
   if (job.calibration.empty()) {
-    return job.rig.camera(width_px, height_px, side, false);
+    return job.rig.camera(width_px, height_px, job.reference, false);
   }
   const StereoCalibration cameras = job.rig.read(job.calibration);
-  return map_camera(rectified_pair(cameras, width_px, height_px, job.rectification), side,
+  return map_camera(rectified_pair(cameras, width_px, height_px, job.rectification), job.reference,
                     job.rig.required_unit_of(cameras));
 }
 

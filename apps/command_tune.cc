@@ -52,15 +52,10 @@ void add_tune_settings(Settings& settings, TuneJob& job) {
   settings.start_group("Tuning");
   Setting& size = settings.add("size", "WxH", "Width and height of the images, such as 1280x720");
   size.set = [&job](const SettingValue& value) {
-    const auto sides = split(to_text(value), 'x');
-    try {
-      if (sides.size() == 2) {
-        job.images = TunedImages{to_integer(sides[0]), to_integer(sides[1])};
-        return;
-      }
-    } catch (const UsageError&) {  // the message below says more
-    }
-    reject_value(value, "WxH in whole pixels, such as 1280x720");
+    job.images =
+        from_parts(value, 'x', 2, "WxH in whole pixels, such as 1280x720", [](const auto& sides) {
+          return std::optional(TunedImages{to_integer(sides[0]), to_integer(sides[1])});
+        });
   };
   size.get = [&job]() -> SettingValue {
     return job.images

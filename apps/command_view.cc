@@ -26,14 +26,10 @@ struct ViewJob {
 };
 
 ViewRange to_view_range(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
-  try {
-    if (parts.size() == 2) {
-      return {to_number(parts[0]), to_number(parts[1])};
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, "A:B with two positions in baselines, such as -0.5:1.5");
+  return from_parts(value, ':', 2, "A:B with two positions in baselines, such as -0.5:1.5",
+                    [](const auto& parts) {
+                      return std::optional(ViewRange{to_number(parts[0]), to_number(parts[1])});
+                    });
 }
 
 void add_range_setting(Settings& settings, const std::string& name, ViewRange& range,

@@ -7,9 +7,11 @@
 
 #include "apps/metric_settings.h"
 #include "engine/error.h"
+#include "engine/image/finite_values.h"
 #include "engine/io/atomic_file.h"
 #include "engine/io/depth_io.h"
 #include "engine/io/map_formats.h"
+#include "engine/order_statistics.h"
 #include "engine/reprojection/ply_file.h"
 
 namespace vantage::apps {
@@ -21,20 +23,14 @@ double max_depth_in(const std::string& file, const CloudOptions& options) {
 }
 
 SettingValue depth_values(ImageView<const float> depth_m) {
-  std::vector<float> known;
-  for (int y = 0; y < depth_m.height(); ++y) {
-    std::copy_if(depth_m.row(y), depth_m.row(y) + depth_m.width(), std::back_inserter(known),
-                 [](float z) { return std::isfinite(z); });
-  }
+  std::vector<float> known = finite_values(depth_m);
   const double pixels = static_cast<double>(depth_m.width()) * depth_m.height();
   SettingValue values = {{"known_share", static_cast<double>(known.size()) / pixels}};
   if (!known.empty()) {
     const auto [nearest, farthest] = std::minmax_element(known.begin(), known.end());
     values["min_m"] = *nearest;
     values["max_m"] = *farthest;
-    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-    std::nth_element(known.begin(), middle, known.end());
-    values["median_m"] = *middle;
+    values["median_m"] = upper_median(known);
   }
   return values;
 }

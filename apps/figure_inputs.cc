@@ -175,10 +175,7 @@ void check_figure_inputs(const FigureInputs& inputs, const Settings& settings) {
     settings.refuse_idle({"truth", "truth-scale", "disparities"},
                          "without --left and --right, or --data");
   }
-  if (inputs.truth_scale && !(*inputs.truth_scale > 0)) {
-    throw UsageError(
-        fmt::format("--truth-scale is {}, expected a number above 0", *inputs.truth_scale));
-  }
+  require_above_0("truth-scale", inputs.truth_scale);
 }
 
 FigureImages read_figure_inputs(const FigureInputs& inputs, Execution& execution) {

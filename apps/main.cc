@@ -92,7 +92,7 @@ std::string unknown_command(const Arguments& arguments) {
 /// Prints the message as one line on stderr, whatever characters it has.
 int fail(const std::string& command, const std::string& message, int exit_code) {
   const std::string line = fmt::format("vantage{}{}: {}\n", command.empty() ? "" : " ", command,
-                                       vantage::printable(message));
+                                       vantage::printable(vantage::apps::with_dashes(message)));
   vantage::apps::tell_text(line);
   return exit_code;
 }

@@ -176,7 +176,7 @@ void check_unrectified(const MatchJob& job, const Settings& settings) {
 
 void add_match_job_settings(Settings& settings, MatchJob& job) {
   add_file_settings(settings, job);
-  add_reference_setting(settings, job.match);
+  add_reference_setting(settings, job.match.reference);
   add_depth_settings(settings, job.depth);
   add_match_settings(settings, job.match);
   add_tuning_settings(settings, job.tuning);

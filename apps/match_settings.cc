@@ -57,14 +57,9 @@ SettingValue resolved_parameters(const MatchOptions& options) {
 }  // namespace
 
 DisparityRange to_disparity_range(const SettingValue& value, std::string_view expected) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
-  try {
-    if (parts.size() == 2) {
-      return {to_integer(parts[0]), to_integer(parts[1])};
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, expected);
+  return from_parts(value, ':', 2, expected, [](const auto& parts) {
+    return std::optional(DisparityRange{to_integer(parts[0]), to_integer(parts[1])});
+  });
 }
 
 std::string to_text(DisparityRange range) { return fmt::format("{}:{}", range.min, range.max); }
@@ -146,10 +141,9 @@ void check_baselines(const Settings& settings, const std::vector<double>& baseli
   }
 }
 
-void add_reference_setting(Settings& settings, MatchOptions& options) {
+void add_reference_setting(Settings& settings, Side& reference) {
   settings.start_group("Matching");
-  settings.choice<Side>("reference", options.reference,
-                        {{"left", Side::kLeft}, {"right", Side::kRight}},
+  settings.choice<Side>("reference", reference, {{"left", Side::kLeft}, {"right", Side::kRight}},
                         "Image that the disparity map belongs to");
 }
 

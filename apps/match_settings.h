@@ -22,7 +22,7 @@ void add_baselines_setting(Settings& settings, std::vector<double>& baselines, s
 /// Throws UsageError unless there is one number for each of `others` images; idle options too.
 void check_baselines(const Settings& settings, const std::vector<double>& baselines,
                      std::size_t others);
-void add_reference_setting(Settings& settings, MatchOptions& options);
+void add_reference_setting(Settings& settings, Side& reference);
 
 /// Settings for the report: the values of `settings` and, under `resolved`, those of
 /// add_match_settings() after preset and method have filled in what is not set. `resolved.preset`

@@ -101,15 +101,17 @@ void add_surface_settings(Settings& settings, SynthesisOptions& options) {
   no_matching.get = [&options] { return !options.match_intensities; };
 }
 
+std::uint64_t to_seed(const SettingValue& value) {
+  const int number = to_integer(value);
+  if (number < 0) {
+    reject_value(value, "a whole number of at least 0");
+  }
+  return static_cast<std::uint64_t>(number);
+}
+
 void add_seed_setting(Settings& settings, std::uint64_t& seed) {
   Setting& setting = settings.add("seed", "N", "Random seed; the same seed gives the same images");
-  setting.set = [&seed](const SettingValue& value) {
-    const int number = to_integer(value);
-    if (number < 0) {
-      reject_value(value, "a whole number of at least 0");
-    }
-    seed = static_cast<std::uint64_t>(number);
-  };
+  setting.set = [&seed](const SettingValue& value) { seed = to_seed(value); };
   setting.get = [&seed] { return seed; };
 }
 

@@ -39,7 +39,9 @@ void check_combining(const Settings& settings, const SynthesisOptions& options);
 /// The settings of add_combining_settings() without --gamma.
 void add_surface_settings(Settings& settings, SynthesisOptions& options);
 
-/// --seed, a whole number of at least 0.
+/// A whole number of at least 0. Throws UsageError.
+std::uint64_t to_seed(const SettingValue& value);
+/// --seed.
 void add_seed_setting(Settings& settings, std::uint64_t& seed);
 
 }  // namespace vantage::apps

@@ -70,10 +70,7 @@ void check_pair(const PairInput& pair, const Settings& settings) {
         "one of --left-disparity and --right-disparity is missing, expected both or "
         "none");
   }
-  if (pair.disparity_scale && !(*pair.disparity_scale > 0)) {
-    throw UsageError(
-        fmt::format("--disparity-scale is {}, expected a number above 0", *pair.disparity_scale));
-  }
+  require_above_0("disparity-scale", pair.disparity_scale);
   if (pair.has_maps()) {
     refuse_idle_match_options(settings);
   } else {

@@ -11,6 +11,7 @@
 #include "engine/io/atomic_file.h"
 #include "engine/io/json_text.h"
 #include "engine/profiling/timeline.h"
+#include "engine/seconds_since.h"
 #include "scheduler/hardware_counters.h"
 
 namespace vantage::apps {
@@ -18,10 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 std::map<std::string, RunMeasurement::Part> parts_in(const SettingValue& names) {
   std::map<std::string, RunMeasurement::Part> parts;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/evaluation/evidence_image.h"
+#include "engine/order_statistics.h"
 #include "engine/plot/heat_map.h"
 #include "engine/plot/line_plot.h"
 #include "engine/plot/picture_sheet.h"
@@ -118,10 +119,8 @@ float shown_evidence(const std::vector<Image<float>>& images) {
   if (magnitudes.empty()) {
     return 1;
   }
-  const auto place = magnitudes.begin() +
-                     static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(magnitudes.size() - 1));
-  std::nth_element(magnitudes.begin(), place, magnitudes.end());
-  return std::max(*place, 1e-6F);
+  const auto rank = static_cast<std::size_t>(0.99 * static_cast<double>(magnitudes.size() - 1));
+  return std::max(value_of_rank(magnitudes, rank), 1e-6F);
 }
 
 }  // namespace

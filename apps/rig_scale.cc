@@ -9,12 +9,6 @@
 namespace vantage::apps {
 namespace {
 
-void require_length(const char* option, const std::optional<double>& value) {
-  if (value && !(*value > 0 && std::isfinite(*value))) {
-    throw UsageError(fmt::format("{} is {}, expected a number above 0", option, *value));
-  }
-}
-
 void add_principal_point(Settings& settings, std::optional<std::array<double, 2>>& point) {
   constexpr const char* kAutomatic = "auto";
   Setting& setting = settings.add("principal-point", "CX,CY",
@@ -25,15 +19,10 @@ void add_principal_point(Settings& settings, std::optional<std::array<double, 2>
       point.reset();
       return;
     }
-    const auto parts = split(to_text(value), ',');
-    try {
-      if (parts.size() == 2) {
-        point = {to_number(parts[0]), to_number(parts[1])};
-        return;
-      }
-    } catch (const UsageError&) {  // the message below says more
-    }
-    reject_value(value, "two numbers of pixels such as 319.5,239.5, or auto");
+    point = from_parts(value, ',', 2, "two numbers of pixels such as 319.5,239.5, or auto",
+                       [](const auto& parts) {
+                         return std::optional(std::array{to_number(parts[0]), to_number(parts[1])});
+                       });
   };
   setting.get = [&point]() -> SettingValue {
     return point ? fmt::format("{},{}", (*point)[0], (*point)[1]) : std::string(kAutomatic);
@@ -43,10 +32,10 @@ void add_principal_point(Settings& settings, std::optional<std::array<double, 2>
 }  // namespace
 
 void RigScale::validate(const std::string& calibration) const {
-  require_length("focal-length", focal_length_px);
-  require_length("baseline", baseline_m);
+  require_above_0("focal-length", focal_length_px);
+  require_above_0("baseline", baseline_m);
   if (doffs_px && !std::isfinite(*doffs_px)) {
-    throw UsageError(fmt::format("doffs is {}, expected a finite number", *doffs_px));
+    throw UsageError(fmt::format("--doffs is {}, expected a finite number", *doffs_px));
   }
   if (!calibration.empty()) {
     if (focal_length_px || doffs_px || principal_point_px) {

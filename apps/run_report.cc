@@ -74,10 +74,6 @@ void RunReport::start_trace(const std::string& path) {
   }
 }
 
-double RunReport::seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 double RunReport::cells_per_second() const {
   return compute_seconds_ > 0 ? cells_ / compute_seconds_ : 0;
 }

@@ -14,6 +14,7 @@
 #include "engine/execution.h"
 #include "engine/image/memory_use.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/seconds_since.h"
 #include "scheduler/strip_plan.h"
 #include "scheduler/trace.h"
 
@@ -102,7 +103,6 @@ class RunReport {
       return result;
     }
   }
-  [[nodiscard]] static double seconds_since(Clock::time_point start);
   [[nodiscard]] double cells_per_second() const;
   [[nodiscard]] SettingValue memory_json(std::size_t peak_bytes) const;
 

@@ -11,6 +11,7 @@
 #include "apps/depth_settings.h"
 #include "apps/flicker_values.h"
 #include "apps/tell.h"
+#include "engine/order_statistics.h"
 #include "engine/sequence/sequence_join.h"
 
 namespace vantage::apps {
@@ -93,9 +94,7 @@ SettingValue depth_resolution_of(const RunJob& job, const RunSession& session,
   if (medians.empty()) {
     return nullptr;
   }
-  const auto middle = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 2);
-  std::nth_element(medians.begin(), middle, medians.end());
-  all.median_px = *middle;
+  all.median_px = upper_median(medians);
   SettingValue values = values_of(all);
   values["frames"] = std::move(frames);
   return values;
@@ -163,7 +162,7 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
 
 void print_sound_problem(const std::string& command, const std::string& problem) {
   if (!problem.empty()) {
-    tell("{}: note: the videos have no sound: {}\n", command, problem);
+    tell("{}: note: the videos have no sound: {}\n", command, with_dashes(problem));
   }
 }
 

@@ -178,7 +178,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_steadiness_settings(settings, job);
   add_part_settings(settings, job);
   add_pipeline_settings(settings, job);
-  add_reference_setting(settings, job.sequence.match);
+  add_reference_setting(settings, job.sequence.match.reference);
   add_match_settings(settings, job.sequence.match);
   add_synthesis_settings(settings, job.sequence.synthesis);
   add_tuning_settings(settings, job.tuning);

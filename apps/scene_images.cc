@@ -13,18 +13,13 @@ namespace vantage::apps {
 namespace {
 
 GridSize to_grid(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", 'x');
-  try {
-    if (parts.size() == 2) {
-      const GridSize grid{to_integer(parts[0]), to_integer(parts[1])};
-      if (grid.columns >= 1 && grid.rows >= 1 && grid.columns <= SceneLayout::kMaxVertices &&
-          grid.rows <= SceneLayout::kMaxVertices) {
-        return grid;
-      }
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, "COLUMNSxROWS such as 5x3");
+  return from_parts(value, 'x', 2, "COLUMNSxROWS such as 5x3", [](const auto& parts) {
+    const GridSize grid{to_integer(parts[0]), to_integer(parts[1])};
+    const bool is_valid = grid.columns >= 1 && grid.rows >= 1 &&
+                          grid.columns <= SceneLayout::kMaxVertices &&
+                          grid.rows <= SceneLayout::kMaxVertices;
+    return is_valid ? std::optional(grid) : std::nullopt;
+  });
 }
 
 ScenePosition to_spacing(const SettingValue& value) {
@@ -62,14 +57,9 @@ std::vector<SceneImage> images_on_grid(const SceneImagesInput& input) {
 }  // namespace
 
 ScenePosition to_scene_position(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ',');
-  try {
-    if (parts.size() == 2) {
-      return {to_number(parts[0]), to_number(parts[1])};
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, "a position X,Y such as 1.5,0");
+  return from_parts(value, ',', 2, "a position X,Y such as 1.5,0", [](const auto& parts) {
+    return std::optional(ScenePosition{to_number(parts[0]), to_number(parts[1])});
+  });
 }
 
 void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {

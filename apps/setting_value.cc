@@ -98,4 +98,10 @@ std::vector<std::string> split(std::string_view text, char separator) {
   }
 }
 
+void require_above_0(std::string_view name, const std::optional<double>& value) {
+  if (value && !(*value > 0 && std::isfinite(*value))) {
+    throw UsageError(fmt::format("--{} is {}, expected a number above 0", name, *value));
+  }
+}
+
 }  // namespace vantage::apps

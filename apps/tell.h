@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -16,5 +17,9 @@ template <typename... Args>
 void tell(fmt::format_string<Args...> format, Args&&... args) {
   tell_text(fmt::format(format, std::forward<Args>(args)...));
 }
+
+/// A message of the engine, which names options as `name` because not all its users have a command
+/// line, with --name instead.
+std::string with_dashes(std::string_view message);
 
 }  // namespace vantage::apps

@@ -20,22 +20,23 @@
 #include "engine/io/photograph_io.h"
 #include "engine/io/preview.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "engine/view_geometry/depth_resolution.h"
+#include "engine/view_geometry/view_pose.h"
 
 namespace vantage::apps {
 namespace {
 
-constexpr double kFarthestPageView = 16;  // baselines, as the engine has it
-constexpr int kMaxSide = 16384;           // the largest texture of nearly all graphics
+constexpr int kMaxSide = 16384;  // the largest texture of nearly all graphics
 constexpr int kLargestNumber = 65535;
 constexpr double kCoarsestStepPx = 1.0 / 16;
 constexpr double kFinestStepPx = 1.0 / 4096;
 
 void check_range(std::string_view option, const ViewRange& range) {
-  if (!(range.first <= range.last && range.first >= -kFarthestPageView &&
-        range.last <= kFarthestPageView)) {
+  if (!(range.first <= range.last && range.first >= -kMaxViewDistance &&
+        range.last <= kMaxViewDistance)) {
     throw UsageError(
         fmt::format("{} is {}:{}, expected two numbers within ±{}, the smaller one first", option,
-                    range.first, range.last, kFarthestPageView));
+                    range.first, range.last, kMaxViewDistance));
   }
 }
 
@@ -108,19 +109,11 @@ std::string_view name_of(HoleFilling holes) {
 /// What turns disparities of the left map into points: from the cameras, or else from a usual lens
 /// with all disparities before infinity.
 SettingValue cloud_of(const PairWithMaps& pair) {
-  std::vector<float> known;
-  const ImageView<const float> map = pair.maps.left.disparity_px.view();
-  for (int y = 0; y < map.height(); ++y) {
-    std::copy_if(map.row(y), map.row(y) + map.width(), std::back_inserter(known),
-                 [](float d) { return std::isfinite(d); });
-  }
-  if (known.empty()) {
-    known.push_back(1);
-  }
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), middle, known.end());
-  const auto median = static_cast<double>(*middle);
-  const auto [smallest, largest] = std::minmax_element(known.begin(), known.end());
+  const DisparityMap& map = pair.maps.left.disparity_px;
+  const DisparityQuantiles disparities =
+      disparity_quantiles(map.view()).value_or(DisparityQuantiles{1, 1, 1});
+  const auto median = static_cast<double>(disparities.median_px);
+  const auto farthest = static_cast<double>(disparities.farthest_px);
   double focal_px = map.width();
   double doffs_px = 0;
   SettingValue centre = {(map.width() - 1) / 2.0, (map.height() - 1) / 2.0};
@@ -132,9 +125,10 @@ SettingValue cloud_of(const PairWithMaps& pair) {
   }
   if (!pair.cameras || !(median + doffs_px > 0)) {
     constexpr double kNearerThanInfinity = 0.1;  // of the range
-    const double margin =
-        std::max(kNearerThanInfinity * static_cast<double>(*largest - *smallest), 0.5);
-    doffs_px = std::max(doffs_px, margin - static_cast<double>(*smallest));
+    const double margin = std::max(
+        kNearerThanInfinity * static_cast<double>(disparities.nearest_px - disparities.farthest_px),
+        0.5);
+    doffs_px = std::max(doffs_px, margin - farthest);
   }
   return {{"focal", focal_px},
           {"centre", centre},

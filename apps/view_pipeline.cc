@@ -12,6 +12,7 @@
 #include "apps/interrupt.h"
 #include "apps/progress.h"
 #include "apps/tell.h"
+#include "engine/seconds_since.h"
 #include "engine/sequence/busy_clock.h"
 #include "scheduler/frame_pipeline.h"
 
@@ -19,10 +20,6 @@ namespace vantage::apps {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 struct Slot {
   int view = 0;

@@ -13,51 +13,34 @@
 namespace vantage::apps {
 namespace {
 
-constexpr int kMaxSceneViews = 10000;
-
-ImageSweep to_image_sweep(const SettingValue& value, const std::vector<std::string>& parts) {
-  try {
+ImageSweep to_image_sweep(const SettingValue& value) {
+  const std::string expected = fmt::format(
+      "FIRST:LAST:VIEWS with numbers of images and 2 to {} views, such as 0:3:50", kMaxViews);
+  return from_parts(value, ':', 3, expected, [](const auto& parts) {
     const ImageSweep sweep{to_integer(parts[0]), to_integer(parts[1]), to_integer(parts[2])};
-    if (sweep.views >= 2 && sweep.views <= kMaxSceneViews) {
-      return sweep;
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, fmt::format("FIRST:LAST:VIEWS with numbers of images and 2 to {} views, such "
-                                  "as 0:3:50",
-                                  kMaxSceneViews));
+    return is_view_count(sweep.views) ? std::optional(sweep) : std::nullopt;
+  });
 }
 
 BetweenImages to_between(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
-  try {
-    if (parts.size() == 3) {
-      const BetweenImages between{to_integer(parts[0]), to_integer(parts[1]), to_number(parts[2])};
-      if (between.share >= 0 && between.share <= 1) {
-        return between;
-      }
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, "A:B:SHARE with numbers of images and a share from 0 to 1, such as 0:3:0.5");
+  constexpr const char* kExpected =
+      "A:B:SHARE with numbers of images and a share from 0 to 1, such as 0:3:0.5";
+  return from_parts(value, ':', 3, kExpected, [](const auto& parts) {
+    const BetweenImages between{to_integer(parts[0]), to_integer(parts[1]), to_number(parts[2])};
+    return between.share >= 0 && between.share <= 1 ? std::optional(between) : std::nullopt;
+  });
 }
 
 std::string text_of(ScenePosition position) { return fmt::format("{},{}", position.x, position.y); }
 
 SceneSweep to_scene_sweep(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
-  try {
-    if (parts.size() == 3) {
-      const SceneSweep sweep{to_scene_position(parts[0]), to_scene_position(parts[1]),
-                             to_integer(parts[2])};
-      if (sweep.views >= 2 && sweep.views <= kMaxSceneViews) {
-        return sweep;
-      }
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, fmt::format("X0,Y0:X1,Y1:VIEWS with 2 to {} views, such as 0,0:2,1:50",
-                                  kMaxSceneViews));
+  const std::string expected =
+      fmt::format("X0,Y0:X1,Y1:VIEWS with 2 to {} views, such as 0,0:2,1:50", kMaxViews);
+  return from_parts(value, ':', 3, expected, [](const auto& parts) {
+    const SceneSweep sweep{to_scene_position(parts[0]), to_scene_position(parts[1]),
+                           to_integer(parts[2])};
+    return is_view_count(sweep.views) ? std::optional(sweep) : std::nullopt;
+  });
 }
 
 std::vector<ScenePosition> positions_of(const SceneSweep& sweep) {
@@ -132,7 +115,7 @@ void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
     wanted.sweep.reset();
     wanted.image_sweep.reset();
     if (parts.size() == 3 && !has_positions) {
-      wanted.image_sweep = to_image_sweep(value, parts);
+      wanted.image_sweep = to_image_sweep(value);
     } else {
       wanted.sweep = to_scene_sweep(value);
     }

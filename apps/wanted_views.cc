@@ -12,41 +12,24 @@
 namespace vantage::apps {
 namespace {
 
-constexpr int kMaxViews = 10000;
-constexpr double kFarthestView = 16;  // baselines
-
-// `text` as "A:B:N".
 Sweep to_sweep(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
-  try {
-    if (parts.size() == 3) {
-      const Sweep sweep{to_position(parts[0]), to_position(parts[1]), to_integer(parts[2])};
-      if (sweep.views >= 2 && sweep.views <= kMaxViews) {
-        return sweep;
-      }
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, fmt::format("FIRST:LAST:VIEWS with 2 to {} views, such as 0:1:25 or "
-                                  "0,-0.5:0,0.5:25",
-                                  kMaxViews));
+  const std::string expected = fmt::format(
+      "FIRST:LAST:VIEWS with 2 to {} views, such as 0:1:25 or 0,-0.5:0,0.5:25", kMaxViews);
+  return from_parts(value, ':', 3, expected, [](const auto& parts) {
+    const Sweep sweep{to_position(parts[0]), to_position(parts[1]), to_integer(parts[2])};
+    return is_view_count(sweep.views) ? std::optional(sweep) : std::nullopt;
+  });
 }
 
 Orbit to_orbit(const SettingValue& value) {
-  const auto parts = split(value.is_string() ? value.get<std::string>() : "", ':');
-  try {
-    if (parts.size() == 2) {
-      const Orbit orbit{to_number(parts[0]), to_integer(parts[1])};
-      if (orbit.radius_baselines > 0 && orbit.radius_baselines <= kFarthestView &&
-          orbit.views >= 2 && orbit.views <= kMaxViews) {
-        return orbit;
-      }
-    }
-  } catch (const UsageError&) {  // the message below says more
-  }
-  reject_value(value, fmt::format("RADIUS:VIEWS with a radius of up to {} baselines and 2 to {} "
-                                  "views, such as 0.3:60",
-                                  kFarthestView, kMaxViews));
+  const std::string expected = fmt::format(
+      "RADIUS:VIEWS with a radius of up to {} baselines and 2 to {} views, such as 0.3:60",
+      kMaxViewDistance, kMaxViews);
+  return from_parts(value, ':', 2, expected, [](const auto& parts) {
+    const Orbit orbit{to_number(parts[0]), to_integer(parts[1])};
+    const bool is_near = orbit.radius_baselines > 0 && orbit.radius_baselines <= kMaxViewDistance;
+    return is_near && is_view_count(orbit.views) ? std::optional(orbit) : std::nullopt;
+  });
 }
 
 std::vector<ViewPose> poses_of_path(const PoseList& list) {
@@ -89,6 +72,8 @@ void add_pose_list(Settings& settings, std::string name, PoseList& list, std::st
 
 }  // namespace
 
+bool is_view_count(int views) { return views >= 2 && views <= kMaxViews; }
+
 BaselinePosition to_position(const SettingValue& value) {
   std::vector<std::string> parts;
   try {
@@ -100,14 +85,14 @@ BaselinePosition to_position(const SettingValue& value) {
     if (parts.size() <= 2) {
       const BaselinePosition position{to_number(parts[0]),
                                       parts.size() == 2 ? to_number(parts[1]) : 0};
-      if (std::abs(position.x) <= kFarthestView && std::abs(position.y) <= kFarthestView) {
+      if (std::abs(position.x) <= kMaxViewDistance && std::abs(position.y) <= kMaxViewDistance) {
         return position;
       }
     }
   } catch (const UsageError&) {  // the message below says more
   }
   reject_value(value, fmt::format("a position XS or XS,YS in baselines, within ±{}, such as 0.5",
-                                  kFarthestView));
+                                  kMaxViewDistance));
 }
 
 void add_view_setting(Settings& settings, std::vector<BaselinePosition>& views) {

@@ -12,6 +12,8 @@
 
 namespace vantage::apps {
 
+inline constexpr int kMaxViews = 10000;
+
 /// Views at equal steps from one position to another, both included.
 struct Sweep {
   BaselinePosition first;
@@ -34,6 +36,9 @@ struct WantedViews {
   PoseList path;   ///< a view for every frame between the poses
   std::optional<double> look_at_px;
 };
+
+/// Whether a sweep or orbit may have so many views.
+bool is_view_count(int views);
 
 /// XS or "XS,YS". Throws UsageError.
 BaselinePosition to_position(const SettingValue& value);

@@ -59,7 +59,6 @@ FrameOutcome run_frames(Executor& executor, int in_flight, const FrameSteps& ste
     }
     try {
       if (skip && skip(slot, error_of(slot))) {
-        ++outcome.frames_skipped;
         return;
       }
       last_error = error_of(slot);

@@ -11,7 +11,6 @@ namespace vantage::scheduler {
 /// How a pipeline of frames ended.
 struct FrameOutcome {
   int frames_written = 0;
-  int frames_skipped = 0;
   bool interrupted = false;  ///< `stop` was raised before the source ended
 };
 

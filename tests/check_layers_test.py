@@ -77,6 +77,13 @@ class CheckLayersTest(PlantedTreeTest):
         self.expect_violation("apps/a.cc", 'fmt::print(stderr, "text");\n', "apps/a.cc:1: ")
         self.expect_violation("apps/a.cc", 'std::fputs(text, stderr);\n', "apps/a.cc:1: ")
 
+    def test_options_with_dashes_in_the_engine(self):
+        self.expect_violation("engine/a.cc", 'throw Error("give --search-size");\n', "engine/a.cc:1: ")
+        self.expect_violation("engine/a.cc", '"or --force to continue"\n', "engine/a.cc:1: ")
+        for text in ['throw Error("give --search-size");\n', '/// "--force"\n', '"--- a"; --a;\n']:
+            name = "apps/a.cc" if "search" in text else "engine/a.cc"
+            self.assertEqual(self.check({**CLEAN_TREE, name: text}).returncode, 0, text)
+
     def test_header_without_pragma_once(self):
         self.expect_violation("tests/engine/a.h", "int a();\n", "tests/engine/a.h:1: ")
 

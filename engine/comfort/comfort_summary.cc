@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "engine/order_statistics.h"
+
 namespace vantage {
 namespace {
 
@@ -66,9 +68,7 @@ std::optional<double> median_of(const Frames& frames, const Value& value) {
   if (values.empty()) {
     return std::nullopt;
   }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return pixels(*middle);
+  return pixels(upper_median(values));
 }
 
 void add_borders(const Frames& frames, const ComfortLimits& limits, ComfortSummary& summary) {

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <vector>
 
+#include "engine/order_statistics.h"
+
 namespace vantage {
 float section_quantile(const DisparitySection& section, double share) {
   std::vector<float> known;
@@ -16,10 +18,8 @@ float section_quantile(const DisparitySection& section, double share) {
   if (known.empty()) {
     return 0;
   }
-  const auto place =
-      known.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(known.size() - 1));
-  std::nth_element(known.begin(), place, known.end());
-  return *place;
+  return value_of_rank(known,
+                       static_cast<std::size_t>(share * static_cast<double>(known.size() - 1)));
 }
 
 Image<std::uint8_t> section_picture(const DisparitySection& section, float dark, float light) {

@@ -133,7 +133,7 @@ FigureImages generate(const StandIn& stand_in, const FigureRun& run) {
   FigureImages images{
       .description = fmt::format(
           "a generated scene of {}x{} pixels with disparities of {:.3g} to {:.3g}, because {} is "
-          "not public; --left and --right, or --data, take photographs instead",
+          "not public; photographs can be given instead",
           options.width_px, options.height_px, *options.far_disparity_px,
           *options.near_disparity_px, stand_in.instead_of),
       .left = std::move(left.image),

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/order_statistics.h"
 
 namespace vantage {
 namespace {
@@ -41,9 +42,7 @@ DataRange range_of_data(ImageView<const float> raster) {
     values = sample(1);
   }
   const auto value_at = [&](double share) {
-    const auto place = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
-    std::ranges::nth_element(values, place);
-    return static_cast<double>(*place);
+    return static_cast<double>(percentile(values, share));
   };
   DataRange range{value_at(kClippedShare), value_at(1 - kClippedShare)};
   if (!(range.high > range.low)) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/error.h"
-
 extern "C" {
 #include <libavutil/base64.h>
 }
@@ -34,30 +32,6 @@ std::string encode_base64(std::span<const std::uint8_t> bytes) {
   }
   text.resize(letters);
   return text;
-}
-
-std::vector<std::uint8_t> decode_base64(std::string_view text) {
-  if (text.size() % kGroupLetters != 0) {
-    throw Error("length of base64 text is not a multiple of 4");
-  }
-  std::vector<std::uint8_t> bytes(text.size() / kGroupLetters * kGroupBytes);
-  std::size_t count = 0;
-  while (!text.empty()) {
-    const std::string block(text.substr(0, kBlockGroups * kGroupLetters));
-    text.remove_prefix(block.size());
-    const std::size_t room = block.size() / kGroupLetters * kGroupBytes;
-    const int decoded =
-        av_base64_decode(bytes.data() + count, block.c_str(), static_cast<int>(room));
-    const std::size_t padding = block.ends_with("==") ? 2 : block.ends_with('=') ? 1 : 0;
-    const std::size_t expected = room - padding;
-    // Also detects padding before the end, because nothing after it is decoded.
-    if (decoded < 0 || static_cast<std::size_t>(decoded) != expected) {
-      throw Error("text is not base64 with padding");
-    }
-    count += expected;
-  }
-  bytes.resize(count);
-  return bytes;
 }
 
 }  // namespace vantage

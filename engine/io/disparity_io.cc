@@ -68,7 +68,7 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
           const bool has_default = is_png && sizeof(T) == 2;
           if (scale == 0 && !has_default) {
             file.fail(
-                "holds integers, expected a scale to divide them by (--scale, --disparity-scale; "
+                "holds integers, expected a scale to divide them by (`scale`, `disparity-scale`; "
                 "256 for 16-bit PNG)");
           }
           return from_integers(image, scale > 0 ? scale : kIntegerDisparityScale);
@@ -106,7 +106,7 @@ void require_holds_search(const std::filesystem::path& path, int min_px, int max
       (min_px < 0 || max_px * kIntegerDisparityScale > kLargestIntegerDisparity)) {
     throw UsageError(
         fmt::format("{} is a 16-bit PNG, which holds disparities from 0 to 255.99, but the search "
-                    "range is {}:{}; expected {}, which have no limits, or --disparities MIN:MAX "
+                    "range is {}:{}; expected {}, which have no limits, or `disparities` MIN:MAX "
                     "within 0:255",
                     path.string(), min_px, max_px, listed_map_formats(MapContent::kConfidence)));
   }

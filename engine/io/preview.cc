@@ -11,29 +11,20 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/image/finite_values.h"
 #include "engine/io/opencv_setup.h"
+#include "engine/order_statistics.h"
 
 namespace vantage {
 
 PreviewRange choose_preview_range(ImageView<const float> disparity) {
-  std::vector<float> known;
-  known.reserve(static_cast<std::size_t>(disparity.width()) *
-                static_cast<std::size_t>(disparity.height()));
-  for (int y = 0; y < disparity.height(); ++y) {
-    std::copy_if(disparity.row(y), disparity.row(y) + disparity.width(), std::back_inserter(known),
-                 [](float d) { return std::isfinite(d); });
-  }
+  std::vector<float> known = finite_values(disparity);
   if (known.empty()) {
     return {};
   }
   const std::size_t last = known.size() - 1;
-  const auto percentile = [&](std::size_t percent) {
-    const auto position = known.begin() + static_cast<std::ptrdiff_t>(last * percent / 100);
-    std::nth_element(known.begin(), position, known.end());
-    return *position;
-  };
-  const float low = percentile(1);
-  const float high = percentile(99);
+  const float low = value_of_rank(known, last / 100);
+  const float high = value_of_rank(known, last * 99 / 100);
   return low < high ? PreviewRange{low, high} : PreviewRange{low - 0.5F, high + 0.5F};
 }
 

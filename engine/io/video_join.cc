@@ -170,7 +170,7 @@ void require_sound_file(const SoundTrack& sound) {
   if (!sound.video.empty() && !fs::exists(sound.video, ignored)) {
     throw Error(
         fmt::format("cannot read {}: no such file, expected the video whose sound is copied; use "
-                    "--no-sound to write none",
+                    "`no-sound` to write none",
                     sound.video.string()));
   }
 }

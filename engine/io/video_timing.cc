@@ -14,6 +14,7 @@
 #include "engine/io/libav.h"
 #include "engine/io/libav_functions.h"
 #include "engine/io/video_structure.h"
+#include "engine/order_statistics.h"
 
 extern "C" {
 #include <libavformat/avformat.h>
@@ -152,9 +153,7 @@ double usual_step(std::vector<std::int64_t> times) {
   if (steps.empty()) {
     return 0;
   }
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(upper_median(steps));
 }
 
 std::optional<FrameRate> to_frame_rate(AVRational rate) {

@@ -223,7 +223,7 @@ DisparityRange require_disparity_range(const std::optional<DisparityRange>& foun
   if (!found) {
     throw Error(
         "no disparity range can be estimated from the images, expected texture that both show; "
-        "give --disparities MIN:MAX");
+        "give `disparities` MIN:MAX");
   }
   return *found;
 }

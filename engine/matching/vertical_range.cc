@@ -105,7 +105,7 @@ DisparityRange require_vertical_range(const std::optional<DisparityRange>& found
   if (!found) {
     throw Error(
         "the images have too few points in common to estimate the vertical range, expected texture "
-        "that both show; give --disparities-y MIN:MAX");
+        "that both show; give `disparities-y` MIN:MAX");
   }
   return *found;
 }

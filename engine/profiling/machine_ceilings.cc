@@ -8,16 +8,13 @@
 #include <functional>
 #include <vector>
 
+#include "engine/seconds_since.h"
 #include "kernels/machine_ceiling/machine_ceiling.h"
 
 namespace vantage {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Does its work once and returns the amount.
 using Work = std::function<double(int thread)>;

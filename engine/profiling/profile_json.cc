@@ -339,7 +339,7 @@ std::string profile_json(const Profile& profile) {
 Profile read_profile(const std::string& path) {
   const Json document = read_json_file(path);
   if (!document.is_object() || !document.contains(kSchemaKey)) {
-    throw Error(fmt::format("{}: is no profile, expected what 'profile --json' wrote", path));
+    throw Error(fmt::format("{}: is no profile, expected what 'profile' wrote with `json`", path));
   }
   if (document.at(kSchemaKey) != kSchema) {
     throw Error(

@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "engine/error.h"
+#include "engine/image/remapped_row.h"
 #include "engine/rectification/rectified_positions.h"
-#include "kernels/bicubic_remap/bicubic_remap.h"
 
 namespace vantage {
 namespace {
@@ -185,16 +185,7 @@ void EpipolarGrid::sample(const Photograph& other, int along, int down, Photogra
               x_px[static_cast<std::size_t>(x)] = static_cast<float>(at.x());
               y_px[static_cast<std::size_t>(x)] = static_cast<float>(at.y());
             }
-            kernels::remap_bicubic_row(
-                kernels::RemapRow<T>{.pixels = from.row(0),
-                                     .stride = static_cast<std::ptrdiff_t>(from.view().stride()),
-                                     .width = from.width(),
-                                     .height = from.height(),
-                                     .channels = from.channels(),
-                                     .x_px = x_px.data(),
-                                     .y_px = y_px.data(),
-                                     .count = width_},
-                to.row(y));
+            remap_row(from, x_px.data(), y_px.data(), y, to);
           }
         });
         result.pixels = std::move(to);

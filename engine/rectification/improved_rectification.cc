@@ -72,7 +72,7 @@ void require_success(const Rectification& rectification, std::size_t matches,
   if (rectification.remaining->rms_px > kMaxRemaining_px) {
     throw Error(
         fmt::format("{}: the remaining row error is {:.1f} px RMS, expected at most {}: the images "
-                    "show too little to estimate the cameras, use --calibration",
+                    "show too little to estimate the cameras, use `calibration`",
                     inputs, rectification.remaining->rms_px, kMaxRemaining_px));
   }
 }

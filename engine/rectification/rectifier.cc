@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "engine/error.h"
-#include "kernels/bicubic_remap/bicubic_remap.h"
+#include "engine/image/remapped_row.h"
 #include "scheduler/interruption.h"
 
 namespace vantage {
@@ -93,16 +93,7 @@ void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
               std::copy_n(from.row(y), width * from.channels(), to.row(y));
               continue;
             }
-            kernels::remap_bicubic_row(
-                kernels::RemapRow<T>{.pixels = from.row(0),
-                                     .stride = static_cast<std::ptrdiff_t>(from.view().stride()),
-                                     .width = from.width(),
-                                     .height = from.height(),
-                                     .channels = from.channels(),
-                                     .x_px = view(side).x_px.row(y),
-                                     .y_px = view(side).y_px.row(y),
-                                     .count = width},
-                to.row(y));
+            remap_row(from, view(side).x_px.row(y), view(side).y_px.row(y), y, to);
           }
         });
       },

@@ -13,8 +13,8 @@
 
 #include "engine/error.h"
 #include "engine/io/opencv_setup.h"
+#include "engine/order_statistics.h"
 #include "engine/rectification/cross_matrix.h"
-#include "engine/rectification/order_statistics.h"
 #include "engine/rectification/vertical_error.h"
 
 namespace vantage {
@@ -215,7 +215,7 @@ RefinedPose refine_relative_pose(const StereoCalibration& calibration,
     }
     rms = std::sqrt(sum / static_cast<double>(std::max<std::size_t>(near.size(), 1)));
     require_inliers(static_cast<int>(near.size()), matches.size());
-    const double deviation = std::max(1.4826 * upper_median(std::move(near)), 1e-3 / focal_px);
+    const double deviation = std::max(1.4826 * upper_median(near), 1e-3 / focal_px);
     const Eigen::ArrayXd share = (residuals.array() / (kDeviationsOfOutliers * deviation)).square();
     weights = (share < 1).select((1 - share).square(), 0);
   }

@@ -10,7 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/io/opencv_setup.h"
-#include "engine/rectification/order_statistics.h"
+#include "engine/order_statistics.h"
 #include "engine/rectification/rig_model.h"
 #include "engine/rectification/vertical_error.h"
 
@@ -120,7 +120,7 @@ Fit epipolar_fit(const RigModel& model, const std::vector<PointMatch>& matches, 
         near.push_back(std::abs(distances[i]));
       }
     }
-    const double deviation_px = std::max(1.4826 * upper_median(std::move(near)), 1e-9);
+    const double deviation_px = std::max(1.4826 * upper_median(near), 1e-9);
     // As long as the cameras move away from the usual ones, exact matches may be far off.
     const double patience_px =
         std::max(std::ldexp(tolerance_px, 3 * std::min(kPatientRounds - round, 0)), kExact_px);
@@ -164,14 +164,12 @@ double distance_from_turning_px(const RigModel& model, const std::vector<PointMa
       distances[static_cast<std::size_t>(i)] = apart.segment<2>(2 * i).norm();
     }
     // Under pure rotation, wrong matches may lie on an epipolar line by chance.
-    const double limit_px = std::max(6 * upper_median(distances), kExact_px);
+    const double limit_px = std::max(6 * upper_median(std::vector(distances)), kExact_px);
     for (Eigen::Index i = 0; i < count; ++i) {
       weights[i] = distances[static_cast<std::size_t>(i)] < limit_px ? 1 : 0;
     }
   }
-  const auto index = static_cast<std::ptrdiff_t>(distances.size() * 9 / 10);
-  std::nth_element(distances.begin(), distances.begin() + index, distances.end());
-  return distances[static_cast<std::size_t>(index)];
+  return value_of_rank(distances, distances.size() * 9 / 10);
 }
 
 void require_parallax(const RigModel& model, const std::vector<PointMatch>& matches, const Fit& fit,

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "engine/error.h"
-#include "engine/rectification/order_statistics.h"
+#include "engine/order_statistics.h"
 
 namespace vantage {
 namespace {
@@ -62,7 +62,7 @@ Eigen::VectorXd smooth_part(const Terms& terms, const Eigen::VectorXd& errors) {
       std::vector<double> distances(static_cast<std::size_t>(residuals.size()));
       std::transform(residuals.begin(), residuals.end(), distances.begin(),
                      [](double residual) { return std::abs(residual); });
-      const double deviation = std::max(1.4826 * upper_median(std::move(distances)), 1e-6);
+      const double deviation = std::max(1.4826 * upper_median(distances), 1e-6);
       // Tukey's weights: zero beyond six deviations.
       const Eigen::ArrayXd share = (residuals / (6 * deviation)).square();
       const Eigen::ArrayXd weights = (share < 1).select((1 - share).square(), 0);
@@ -92,7 +92,8 @@ std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& match
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
     distances.push_back(std::abs(errors[i] - smooth[i]));
   }
-  const double limit = std::max(kTolerance_px, kErrorDeviations * 1.4826 * upper_median(distances));
+  const double limit =
+      std::max(kTolerance_px, kErrorDeviations * 1.4826 * upper_median(std::vector(distances)));
 
   VerticalError result{.matches = static_cast<int>(matches.size())};
   std::vector<double> absolute;

@@ -11,8 +11,6 @@
 namespace vantage {
 namespace {
 
-constexpr int kMaxStep = 1024;
-
 void require_size(std::string_view name, int width, int height,
                   ImageView<const float> disparity_px) {
   if (width != disparity_px.width() || height != disparity_px.height()) {
@@ -114,9 +112,9 @@ void CloudOptions::validate() const {
   if (max_depth && !(*max_depth > 0)) {
     throw UsageError(fmt::format("max-depth is {}, expected a number above 0", *max_depth));
   }
-  if (step_px < 1 || step_px > kMaxStep) {
+  if (step_px < 1 || step_px > kMaxCloudStep_px) {
     throw UsageError(
-        fmt::format("cloud-step is {}, expected a number from 1 to {}", step_px, kMaxStep));
+        fmt::format("cloud-step is {}, expected a number from 1 to {}", step_px, kMaxCloudStep_px));
   }
   if (min_confidence && !std::isfinite(*min_confidence)) {
     throw UsageError("cloud-min-confidence is not finite, expected a number");

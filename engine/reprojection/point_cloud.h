@@ -11,6 +11,8 @@
 
 namespace vantage {
 
+inline constexpr int kMaxCloudStep_px = 1024;
+
 /// Which pixels of a map become points.
 struct CloudOptions {
   std::optional<double> max_depth =

@@ -35,7 +35,7 @@ std::optional<VerticalError> require_rectified(const Photograph& first, const Ph
     throw Error(fmt::format(
         "not a rectified pair: {} are off by {:.2f} px ({} points), expected at most {} px; align "
         "the images with 'vantage rectify', correct their positions, or accept them with "
-        "--no-rectification-check",
+        "`no-rectification-check`",
         lines, error->systematic_px, error->inliers, kMaxEdgeError_px));
   }
   return error;
@@ -53,11 +53,11 @@ void require_matched(const std::array<double, 2>& matched_share, const Disparity
                 "the images look exchanged ({:.0f} % of {} points have negative "
                 "disparities), correct their positions",
                 100 * rectification->negative_share, rectification->inliers)
-          : fmt::format("check images, positions and --disparities ({}:{} was searched)",
+          : fmt::format("check images, positions and `disparities` ({}:{} was searched)",
                         searched.min, searched.max);
   throw Error(fmt::format(
       "{:.0f} % of the pixels match, expected at least {:.0f} %; {}, or accept them with "
-      "--no-rectification-check",
+      "`no-rectification-check`",
       100 * share, 100 * kMinEdgeMatchedShare, reason));
 }
 

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/rectification/order_statistics.h"
+#include "engine/order_statistics.h"
 #include "engine/rectification/rectified_pair.h"
-#include "engine/scene_graph/angle_between.h"
+#include "engine/view_geometry/angle_between.h"
 
 namespace vantage {
 namespace {
@@ -153,7 +153,7 @@ double median_length(std::span<const SceneEdge> edges) {
   for (const SceneEdge& edge : edges) {
     lengths.push_back(edge.length);
   }
-  return upper_median(std::move(lengths));
+  return upper_median(lengths);
 }
 
 }  // namespace vantage

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene_graph/posed_pair.h"
+#include "engine/scene_graph/scene_camera.h"
 #include "engine/scene_graph/scene_layout.h"
 
 namespace vantage {

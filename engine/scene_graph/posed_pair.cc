@@ -6,10 +6,8 @@
 #include <cstddef>
 #include <limits>
 #include <utility>
-#include <variant>
 
 #include "engine/scene_graph/interpolated_disparity.h"
-#include "kernels/bicubic_remap/bicubic_remap.h"
 
 namespace vantage {
 namespace {
@@ -39,17 +37,6 @@ StereoCalibration with_rectified_ones_marked(StereoCalibration calibration) {
 constexpr RectificationOptions kAnyDirection = {.kept_outline = 0.5, .any_direction = true};
 
 }  // namespace
-
-StereoCalibration calibration_of(const SceneCamera& first, const SceneCamera& second, int width_px,
-                                 int height_px) {
-  const CameraPose pose = relative_pose(first.pose, second.pose);
-  return {.left = first.lens,
-          .right = second.lens,
-          .rotation = pose.rotation,
-          .translation = pose.translation,
-          .image_size = ImageSize{width_px, height_px},
-          .format = "posed cameras"};
-}
 
 PosedPair::PosedPair(const StereoCalibration& calibration, int width_px, int height_px,
                      Execution& execution)
@@ -99,46 +86,6 @@ MatchedMap PosedPair::on_photograph(Side side, const MatchedMap& map, double sca
     }
   });
   return result;
-}
-
-Photograph undistorted(Photograph source, const Camera& lens, Execution& execution) {
-  if (lens.is_without_distortion()) {
-    return source;
-  }
-  const LensModel model(lens);
-  const Eigen::Matrix3d ray_of = lens.matrix.inverse();
-  return std::visit(
-      [&]<typename T>(const Image<T>& from) {
-        const int width = from.width();
-        Image<T> to(width, from.height(), from.channels());
-        execution.for_each_band(from.height(), [&](int first_row, int end_row) {
-          std::vector<float> x_px(static_cast<std::size_t>(width));
-          std::vector<float> y_px(static_cast<std::size_t>(width));
-          for (int y = first_row; y < end_row; ++y) {
-            for (int x = 0; x < width; ++x) {
-              const Eigen::Vector3d ray = ray_of * Eigen::Vector3d(x, y, 1);
-              const auto at = model.position_of(ray.hnormalized());
-              const auto column = static_cast<std::size_t>(x);
-              x_px[column] = at ? static_cast<float>(at->x()) : kUnknown;
-              y_px[column] = at ? static_cast<float>(at->y()) : kUnknown;
-            }
-            kernels::remap_bicubic_row(
-                kernels::RemapRow<T>{.pixels = from.row(0),
-                                     .stride = static_cast<std::ptrdiff_t>(from.view().stride()),
-                                     .width = width,
-                                     .height = from.height(),
-                                     .channels = from.channels(),
-                                     .x_px = x_px.data(),
-                                     .y_px = y_px.data(),
-                                     .count = width},
-                to.row(y));
-          }
-        });
-        Photograph result;
-        result.pixels = std::move(to);
-        return result;
-      },
-      source.pixels);
 }
 
 }  // namespace vantage

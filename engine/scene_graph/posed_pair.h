@@ -1,32 +1,14 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
 #include "engine/image/photograph.h"
-#include "engine/rectification/camera_pose.h"
-#include "engine/rectification/feature_matches.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/stereo_calibration.h"
 
 namespace vantage {
-
-/// A camera of a scene: its lens, and where it stands in the world.
-struct SceneCamera {
-  Camera lens;
-  CameraPose pose;
-
-  friend bool operator==(const SceneCamera& a, const SceneCamera& b) {
-    return a.lens.matrix == b.lens.matrix && a.lens.distortion == b.lens.distortion &&
-           a.pose == b.pose;
-  }
-};
-
-/// The pair of two posed cameras, as a calibration of images of this size.
-StereoCalibration calibration_of(const SceneCamera& first, const SceneCamera& second, int width_px,
-                                 int height_px);
 
 /// Two posed cameras rectified on their own, in any direction from each other. Their maps are
 /// brought back to the pinhole cameras of the photographs: K and size of a photograph, without its
@@ -60,9 +42,5 @@ class PosedPair {
   Rectifier rectifier_;
   Execution* execution_;
 };
-
-/// The photograph of the pinhole camera with the same K and size: `source` itself without
-/// distortion, black where the photograph shows nothing.
-Photograph undistorted(Photograph source, const Camera& lens, Execution& execution);
 
 }  // namespace vantage

@@ -9,10 +9,12 @@
 #include <numbers>
 
 #include "engine/error.h"
-#include "engine/rectification/order_statistics.h"
-#include "engine/scene_graph/angle_between.h"
+#include "engine/order_statistics.h"
+#include "engine/rectification/undistorted_photograph.h"
 #include "engine/scene_graph/fused_map.h"
 #include "engine/scene_graph/scene_view_options.h"
+#include "engine/view_geometry/angle_between.h"
+#include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
 namespace {
@@ -30,7 +32,7 @@ double typical_depth_of(const StoredScene& scene) {
       depths.push_back(scene.focal_length_px * edge.edge.length / middle_px);
     }
   }
-  return depths.empty() ? scene.unit_length : upper_median(std::move(depths));
+  return depths.empty() ? scene.unit_length : upper_median(depths);
 }
 
 }  // namespace
@@ -50,7 +52,7 @@ PosedViewer::PosedViewer(const StoredScene& scene, LoadVertex load_vertex,
       blended_(with_moving_brightness(options), execution) {
   if (sources < 1 || sources > kMaxViewSources) {
     throw UsageError(
-        fmt::format("--sources is {}, expected a number from 1 to {}", sources, kMaxViewSources));
+        fmt::format("sources is {}, expected a number from 1 to {}", sources, kMaxViewSources));
   }
 }
 
@@ -96,11 +98,11 @@ void PosedViewer::require_near(const PosedCamera& camera) const {
   for (const SceneCamera& image : cameras_) {
     nearest = std::min(nearest, (camera.centre() - image.pose.centre()).norm());
   }
-  if (!(nearest <= SceneViewer::kFarthestView * unit_length_)) {
-    throw UsageError(fmt::format(
-        "camera of the new view is {:.4g} from the nearest image, expected "
-        "at most {:.4g}, {} median edges",
-        nearest, SceneViewer::kFarthestView * unit_length_, SceneViewer::kFarthestView));
+  if (!(nearest <= kMaxViewDistance * unit_length_)) {
+    throw UsageError(
+        fmt::format("camera of the new view is {:.4g} from the nearest image, expected "
+                    "at most {:.4g}, {} median edges",
+                    nearest, kMaxViewDistance * unit_length_, kMaxViewDistance));
   }
 }
 
@@ -143,12 +145,9 @@ void PosedViewer::load(const PosedCamera& camera) {
 }
 
 ViewWarp PosedViewer::warp_from(int vertex, const PosedCamera& camera) const {
-  const SceneCamera& source = cameras_[static_cast<std::size_t>(vertex)];
-  const CameraPose pose =
-      relative_pose(source.pose, {.rotation = camera.rotation, .translation = camera.translation});
-  // λ (u, v, 1) = K₃ R K⁻¹ (x, y, 1) + d K₃ t / scale, with d = scale / Z.
-  return {.homography = camera.matrix * pose.rotation * source.lens.matrix.inverse(),
-          .parallax = camera.matrix * pose.translation / scale_px_};
+  return vantage::warp_between(cameras_[static_cast<std::size_t>(vertex)], camera.matrix,
+                               {.rotation = camera.rotation, .translation = camera.translation},
+                               scale_px_);
 }
 
 /// At the first one's camera, so that it does not depend on the view.

@@ -12,7 +12,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
-#include "engine/scene_graph/posed_pair.h"
+#include "engine/scene_graph/scene_camera.h"
 #include "engine/scene_graph/scene_viewer.h"
 #include "engine/scene_graph/stored_scene.h"
 #include "engine/synthesis/blended_warper.h"
@@ -64,7 +64,7 @@ class PosedViewer {
   [[nodiscard]] double unit_length() const { return unit_length_; }
 
   /// Throws Error for an invalid camera, and UsageError for one that is farther than
-  /// SceneViewer::kFarthestView median edges from all images, or that looks away from them by more
+  /// kMaxViewDistance median edges from all images, or that looks away from them by more
   /// than 60 degrees.
   void require_near(const PosedCamera& camera) const;
 

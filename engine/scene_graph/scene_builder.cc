@@ -22,7 +22,7 @@
 #include "engine/io/photograph_io.h"
 #include "engine/io/temporary_name.h"
 #include "engine/matching/range_estimation.h"
-#include "engine/rectification/order_statistics.h"
+#include "engine/order_statistics.h"
 #include "engine/scene_graph/edge_check.h"
 #include "engine/scene_graph/posed_edges.h"
 #include "engine/scene_graph/rectified_edge.h"
@@ -147,10 +147,10 @@ bool is_there(const fs::path& folder, const StoredFile& file) {
 void SceneBuildOptions::validate() const {
   match.validate();
   if (match.disparities_y) {
-    throw UsageError("--disparities-y cannot be used here: images of a scene are rectified");
+    throw UsageError("disparities-y is set, expected none: images of a scene are rectified");
   }
   if (neighbours < 1 || neighbours > kMaxNeighbours) {
-    throw UsageError(fmt::format("--neighbours is {}, expected a number from 1 to {}", neighbours,
+    throw UsageError(fmt::format("neighbours is {}, expected a number from 1 to {}", neighbours,
                                  kMaxNeighbours));
   }
 }
@@ -205,7 +205,7 @@ void SceneBuilder::find_edges() {
   for (const SceneCamera& camera : cameras) {
     focal_lengths_px.push_back(std::sqrt(camera.lens.matrix(0, 0) * camera.lens.matrix(1, 1)));
   }
-  scene_.focal_length_px = upper_median(std::move(focal_lengths_px));
+  scene_.focal_length_px = upper_median(focal_lengths_px);
 }
 
 /// Unfinished files of a killed process. No other process uses the folder.

@@ -14,18 +14,17 @@
 
 #include "engine/error.h"
 #include "engine/image/eight_bit.h"
+#include "engine/rectification/undistorted_photograph.h"
+#include "engine/scene_graph/cloud_geometry.h"
 #include "engine/scene_graph/fused_map.h"
 #include "engine/scene_graph/interpolated_disparity.h"
 #include "engine/scene_graph/posed_edges.h"
-#include "engine/scene_graph/posed_pair.h"
+#include "engine/scene_graph/scene_camera.h"
 
 namespace vantage {
 namespace {
 
 constexpr float kUnknownDisparity = std::numeric_limits<float>::quiet_NaN();
-constexpr int kMaxStep = 1024;
-constexpr int kNormalRadius_px = 2;
-constexpr float kSurfaceLimit_px = 1;  // between neighbours of one surface
 
 /// An image of the scene, undistorted.
 struct CloudImage {
@@ -34,23 +33,24 @@ struct CloudImage {
   Mask kept;                  ///< 255 where enough images agree; set when its points are made
 };
 
-/// From pixels and nearness of one image to those of another.
-struct Projection {
-  Eigen::Matrix3d homography;  ///< λ (u, v, 1) = homography · (x, y, 1) + d · parallax
-  Eigen::Vector3d parallax;
-
-  /// (u, v), and the share of the depth there: depth in the other / depth in this image.
-  [[nodiscard]] Eigen::Vector3d operator()(double x, double y, double d) const {
-    const Eigen::Vector3d seen = homography * Eigen::Vector3d(x, y, 1) + d * parallax;
-    return {seen.x() / seen.z(), seen.y() / seen.z(), seen.z()};
-  }
-};
+/// Disparities become unknown where `mask` is not 0.
+void forget_where(const Mask& mask, DisparityMap& disparity_px, Execution& execution) {
+  execution.for_each_band(disparity_px.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      for (int x = 0; x < disparity_px.width(); ++x) {
+        if (mask.at(x, y) != 0) {
+          disparity_px.at(x, y) = kUnknownDisparity;
+        }
+      }
+    }
+  });
+}
 
 struct Neighbour {
   const CloudImage* image = nullptr;
   bool is_made = false;  ///< its points are made
-  Projection to;
-  Projection back;
+  ViewWarp to;
+  ViewWarp back;
 };
 
 /// A pixel of a neighbour that shows the same point.
@@ -63,7 +63,7 @@ struct SamePoint {
 std::optional<SamePoint> same_point(const Neighbour& neighbour, double x, double y, double d,
                                     double tolerance_px) {
   const DisparityMap& map = neighbour.image->disparity_px;
-  const Eigen::Vector3d at = neighbour.to(x, y, d);
+  const Eigen::Vector3d at = projected(neighbour.to, x, y, d);
   const double column = std::round(at.x());
   const double row = std::round(at.y());
   if (!(at.z() > 0 && column >= 0 && column < map.width() && row >= 0 && row < map.height())) {
@@ -77,40 +77,11 @@ std::optional<SamePoint> same_point(const Neighbour& neighbour, double x, double
   }
   SamePoint same;
   if (u == at.x() && v == at.y()) {
-    same.disparity_px = found / neighbour.back(u, v, found).z();
+    same.disparity_px = found / projected(neighbour.back, u, v, found).z();
   }
   same.is_made = neighbour.is_made &&
                  neighbour.image->kept.at(static_cast<int>(column), static_cast<int>(row)) != 0;
   return same;
-}
-
-/// Coefficients (a, b, c) of the plane d = a (x − x₀) + b (y − y₀) + c through the disparities of
-/// the surface around a pixel.
-Eigen::Vector3d plane_around(const DisparityMap& map, int x0, int y0) {
-  const float centre = map.at(x0, y0);
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
-  for (int dy = -kNormalRadius_px; dy <= kNormalRadius_px; ++dy) {
-    for (int dx = -kNormalRadius_px; dx <= kNormalRadius_px; ++dx) {
-      const int x = x0 + dx;
-      const int y = y0 + dy;
-      if (x < 0 || x >= map.width() || y < 0 || y >= map.height()) {
-        continue;
-      }
-      const float d = map.at(x, y);
-      const auto steps = static_cast<float>(std::max(std::abs(dx), std::abs(dy)));
-      if (std::abs(d - centre) <= kSurfaceLimit_px * std::max(steps, 1.0F)) {  // not with NaN
-        const Eigen::Vector3d place(dx, dy, 1);
-        products += place * place.transpose();
-        right_side += static_cast<double>(d) * place;
-      }
-    }
-  }
-  Eigen::Vector3d plane(0, 0, static_cast<double>(centre));
-  if (std::abs(products.determinant()) > 0.5) {  // whole numbers: 0 for pixels on one line
-    plane = products.inverse() * right_side;
-  }
-  return plane;
 }
 
 }  // namespace
@@ -135,7 +106,7 @@ struct SceneCloudMaker::Content {
   }
 
   /// Of the images that are left, that with the most neighbours before it: what it shows is then
-  /// hardly made twice. -1: none is left.
+  /// rarely duplicated. -1: none is left.
   [[nodiscard]] int next() const {
     int best = -1;
     std::ptrdiff_t max_made = -1;
@@ -156,8 +127,8 @@ struct SceneCloudMaker::Content {
     for (const int other : neighbours_[static_cast<std::size_t>(number)]) {
       neighbours.push_back({.image = &loaded(other),
                             .is_made = is_made_[static_cast<std::size_t>(other)],
-                            .to = projection(number, other),
-                            .back = projection(other, number)});
+                            .to = warp(number, other),
+                            .back = warp(other, number)});
     }
     Image<float> depths(width_px_, height_px_);  // of the points, NaN where there is none
     image.kept.resize(width_px_, height_px_);
@@ -187,15 +158,7 @@ struct SceneCloudMaker::Content {
   void fuse_matches(SceneVertex& stored, DisparityMap& disparity_px) const {
     std::vector<MapOfEdge> maps;
     for (SceneEdgeMap& map : stored.maps) {
-      execution_.for_each_band(height_px_, [&](int first_row, int end_row) {
-        for (int y = first_row; y < end_row; ++y) {
-          for (int x = 0; x < width_px_; ++x) {
-            if (map.unmatched.at(x, y) != 0) {
-              map.disparity_px.at(x, y) = kUnknownDisparity;
-            }
-          }
-        }
-      });
+      forget_where(map.unmatched, map.disparity_px, execution_);
       maps.push_back({.disparity_px = map.disparity_px.view(),
                       .is_unmatched = map.unmatched.view(),
                       .edge_length = map.length});
@@ -204,23 +167,13 @@ struct SceneCloudMaker::Content {
     fuse_maps(maps, unit_length_, options_.tolerance_px, disparity_px.view(), execution_);
     Mask outlines;
     outline_mask(disparity_px.view(), static_cast<double>(kSurfaceLimit_px), execution_, outlines);
-    execution_.for_each_band(height_px_, [&](int first_row, int end_row) {
-      for (int y = first_row; y < end_row; ++y) {
-        for (int x = 0; x < width_px_; ++x) {
-          if (outlines.at(x, y) != 0) {
-            disparity_px.at(x, y) = kUnknownDisparity;
-          }
-        }
-      }
-    });
+    forget_where(outlines, disparity_px, execution_);
   }
 
-  [[nodiscard]] Projection projection(int from, int to) const {
-    const SceneCamera& source = cameras_[static_cast<std::size_t>(from)];
+  [[nodiscard]] ViewWarp warp(int from, int to) const {
     const SceneCamera& target = cameras_[static_cast<std::size_t>(to)];
-    const CameraPose pose = relative_pose(source.pose, target.pose);
-    return {.homography = target.lens.matrix * pose.rotation * source.lens.matrix.inverse(),
-            .parallax = target.lens.matrix * pose.translation / scale_px_};
+    return warp_between(cameras_[static_cast<std::size_t>(from)], target.lens.matrix, target.pose,
+                        scale_px_);
   }
 
   void decide_row(int y, const std::vector<Neighbour>& neighbours, CloudImage& image,
@@ -284,7 +237,7 @@ struct SceneCloudMaker::Content {
     }
   }
 
-  /// Images that no image that is left has an edge with.
+  /// Images whose neighbours are all done.
   void release() {
     const auto is_made = [&](int number) { return is_made_[static_cast<std::size_t>(number)]; };
     std::erase_if(loaded_, [&](const auto& entry) {
@@ -318,9 +271,9 @@ void SceneCloudOptions::validate() const {
   if (max_depth && !(*max_depth > 0)) {
     throw UsageError(fmt::format("max-depth is {}, expected a number above 0", *max_depth));
   }
-  if (step_px < 1 || step_px > kMaxStep) {
+  if (step_px < 1 || step_px > kMaxCloudStep_px) {
     throw UsageError(
-        fmt::format("cloud-step is {}, expected a number from 1 to {}", step_px, kMaxStep));
+        fmt::format("cloud-step is {}, expected a number from 1 to {}", step_px, kMaxCloudStep_px));
   }
 }
 
@@ -328,7 +281,7 @@ SceneCloudMaker::SceneCloudMaker(const StoredScene& scene, LoadVertex load_verte
                                  const SceneCloudOptions& options, Execution& execution) {
   options.validate();
   if (!scene.is_posed()) {
-    throw UsageError("the scene has no poses, expected one made with --poses");
+    throw UsageError("the scene has no poses, expected one made with `poses`");
   }
   content_ = std::make_unique<Content>(scene, std::move(load_vertex), options, execution);
 }

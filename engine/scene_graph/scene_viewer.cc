@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/scene_graph/fused_map.h"
 #include "engine/scene_graph/scene_view_options.h"
+#include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
 namespace {
@@ -68,11 +69,11 @@ void SceneViewer::require_near(ScenePosition position) const {
   const double length = length_of(place);
   const double away = std::min(warp_to(position, place.vertices[0], length).parallax.norm(),
                                warp_to(position, place.vertices[1], length).parallax.norm());
-  if (!(away <= kFarthestView)) {
+  if (!(away <= kMaxViewDistance)) {
     throw UsageError(fmt::format(
         "view at {},{} is {:.4g} lengths of the nearest edge away from its images, expected at "
         "most {}",
-        position.x, position.y, away, kFarthestView));
+        position.x, position.y, away, kMaxViewDistance));
   }
 }
 

@@ -59,9 +59,6 @@ struct PreparedSceneView {
 /// views.
 class SceneViewer {
  public:
-  /// Maximum distance of a view from the nearer image, in lengths of its edge.
-  static constexpr double kFarthestView = 16;
-
   /// Makes a vertex; called again for one that was evicted. All images have one size, depth and
   /// number of channels.
   using LoadVertex = std::function<SceneVertex(int vertex)>;
@@ -71,7 +68,7 @@ class SceneViewer {
   SceneViewer(const SceneLayout& layout, LoadVertex load_vertex, const SynthesisOptions& options,
               Execution& execution);
 
-  /// Throws UsageError for a position that is not finite, or farther than kFarthestView away.
+  /// Throws UsageError for a position that is not finite, or farther than kMaxViewDistance away.
   void require_near(ScenePosition position) const;
 
   /// Prepares the vertices that prepare() needs for this position: calls LoadVertex. Throws as

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "kernels/bicubic_remap/bicubic_remap.h"
+#include "engine/image/remapped_row.h"
 
 namespace vantage {
 namespace {
@@ -59,16 +59,7 @@ Photograph sheared(const Photograph& photograph, const Shear& shear, Execution& 
               y_px[static_cast<std::size_t>(x)] =
                   static_cast<float>(std::clamp(row, 0.0, last_row));
             }
-            kernels::remap_bicubic_row(
-                kernels::RemapRow<T>{.pixels = from.row(0),
-                                     .stride = static_cast<std::ptrdiff_t>(from.view().stride()),
-                                     .width = width,
-                                     .height = from.height(),
-                                     .channels = from.channels(),
-                                     .x_px = x_px.data(),
-                                     .y_px = y_px.data(),
-                                     .count = width},
-                to.row(y));
+            remap_row(from, x_px.data(), y_px.data(), y, to);
           }
         });
         result.pixels = std::move(to);

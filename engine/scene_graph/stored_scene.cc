@@ -368,8 +368,8 @@ SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int ve
   std::error_code ignored;
   if (!fs::exists(image_file, ignored)) {
     throw Error(
-        fmt::format("{} is missing, expected image {} of the scene; run 'vantage scene build' "
-                    "after moving images, or with --copy-images to keep copies in the folder",
+        fmt::format("{} is missing, expected image {} of the scene; build the scene again "
+                    "after moving images, or with `copy-images` to keep copies in the folder",
                     image_file.lexically_normal().string(), vertex));
   }
   if (content_of_file(image_file) != stored.content) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/matching/options/match_options.h"
-#include "engine/scene_graph/posed_pair.h"
+#include "engine/scene_graph/scene_camera.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/scene_graph/scene_viewer.h"
 

@@ -255,7 +255,7 @@ RunIdentity identity_of(const std::string& text, const std::filesystem::path& fi
     if (json.at("format").get<int>() != kJournalFormat) {
       throw Error(
           fmt::format("{}: has format {} (written by Vantage {}), expected {}; finish the run with "
-                      "that version, or start again with --overwrite",
+                      "that version, or start again with `overwrite`",
                       file.string(), quoted_json(json.at("format")), json.value("version", "?"),
                       kJournalFormat));
     }

@@ -19,7 +19,6 @@
 namespace vantage {
 namespace {
 
-constexpr int kMaxInFlight = 64;
 constexpr int kDefaultMaxInFlight = 34;  // more only even out unequal frames
 /// The program, its libraries and their one-time initialisation.
 constexpr std::size_t kProcessBytes = std::size_t{84} << 20;
@@ -288,7 +287,8 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
   const std::size_t of_worked_on =
       match_bytes(options, shape) + view_bytes(options, shape) + conversion_bytes(shape);
   const int wanted = request.in_flight.value_or(default_frames_in_flight(threads));
-  for (plan.in_flight = std::min(wanted, kMaxInFlight); plan.in_flight >= 1; --plan.in_flight) {
+  for (plan.in_flight = std::min(wanted, kMaxFramesInFlight); plan.in_flight >= 1;
+       --plan.in_flight) {
     const auto matched = static_cast<std::size_t>(std::min(plan.in_flight, threads));
     const std::size_t frames =
         static_cast<std::size_t>(plan.in_flight) * plan.frame_bytes + matched * of_worked_on;

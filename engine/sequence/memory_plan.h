@@ -38,6 +38,8 @@ struct MemoryRequest {
   std::optional<std::size_t> memory_bytes;  ///< upper limit; default: none
 };
 
+inline constexpr int kMaxFramesInFlight = 64;
+
 /// Frames in flight if neither the user nor memory limits them.
 int default_frames_in_flight(int threads);
 

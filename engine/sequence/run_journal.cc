@@ -108,7 +108,7 @@ void require_description(const fs::path& folder) {
   // In this order, because a new run is described first.
   if (has_records(folder) && !RunJournal::is_present(folder)) {
     throw Error(
-        fmt::format("{} has records of a run but no {}, expected both; --overwrite starts again",
+        fmt::format("{} has records of a run but no {}, expected both; `overwrite` starts again",
                     folder.string(), kIdentityFile));
   }
 }
@@ -185,16 +185,16 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
   const bool is_new = create_text_file(journal_folder / kIdentityFile, text_of(identity));
   if (!is_new) {
     if (opening == JournalOpening::kNew && (part == "all" || fs::exists(state_->path))) {
-      throw Error(fmt::format("{} already holds a run, expected {}--overwrite to start again",
+      throw Error(fmt::format("{} already holds a run, expected {}`overwrite` to start again",
                               folder.string(),
-                              identity.is_stream() ? "" : "--resume to continue it or "));
+                              identity.is_stream() ? "" : "`resume` to continue it or "));
     }
     const std::string differs = difference(read_identity(journal_folder), identity);
     if (!differs.empty()) {
       if (opening != JournalOpening::kForce) {
         throw Error(
-            fmt::format("{} holds a different run: {}; expected the same, --force to continue "
-                        "anyway or --overwrite to start again",
+            fmt::format("{} holds a different run: {}; expected the same, `force` to continue "
+                        "anyway or `overwrite` to start again",
                         folder.string(), differs));
       }
       remove_whole(journal_folder / kShotsFile);  // of the other inputs or settings

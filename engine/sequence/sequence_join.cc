@@ -95,7 +95,7 @@ std::string join_segments(const SequenceOptions& options, const SequenceLayout& 
     if (segments_end < end) {
       throw Error(fmt::format(
           "frame {} is in no video segment that continues the one before, expected segments of "
-          "frames {}-{}; 'vantage run --resume' without --frames writes them",
+          "frames {}-{}; `resume` without `frames` writes them",
           segments_end, frames.first, end - 1));
     }
     sound_problem =

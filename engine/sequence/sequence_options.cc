@@ -21,7 +21,6 @@ namespace {
 
 constexpr int kMaxChunkFrames = 100000;
 constexpr int kMaxCrf = 51;
-constexpr double kFarthestView = 16;  // baselines
 
 bool contains(const std::vector<SequenceOutput>& outputs, SequenceOutput output) {
   return std::ranges::find(outputs, output) != outputs.end();
@@ -52,9 +51,9 @@ void require_near(const ViewPose& pose) {
     return;  // the distance of a camera in baselines is not known here
   }
   for (const double coordinate : {position->x, position->y}) {
-    if (!(std::abs(coordinate) <= kFarthestView)) {
+    if (!(std::abs(coordinate) <= kMaxViewDistance)) {
       throw UsageError(fmt::format("view is {}, expected numbers within ±{}", to_string(*position),
-                                   kFarthestView));
+                                   kMaxViewDistance));
     }
   }
 }
@@ -129,8 +128,8 @@ void check_views(const SequenceOptions& options) {
   const bool wanted = std::ranges::any_of(options.save, is_per_view);
   if (wanted && options.views.empty()) {
     throw UsageError(
-        "save has views but no view is given, expected --view XS, --view-path KEYS, --pose FILE or "
-        "--path FILE");
+        "save has views but no view is given, expected `view` XS, `view-path` KEYS, `pose` FILE or "
+        "`path` FILE");
   }
   if (!wanted && !options.views.empty()) {
     throw UsageError("view is given but save has no views, expected both");
@@ -146,9 +145,9 @@ void check_views(const SequenceOptions& options) {
     }
   }
   for (const double view_x : options.stereo_views_x) {
-    if (!(std::abs(view_x) <= kFarthestView)) {
+    if (!(std::abs(view_x) <= kMaxViewDistance)) {
       throw UsageError(fmt::format("stereo-views has {}, expected two numbers within ±{}", view_x,
-                                   kFarthestView));
+                                   kMaxViewDistance));
     }
   }
 }
@@ -197,7 +196,7 @@ void check_formats(const SequenceOptions& options) {
     }
     if (!options.saves(output)) {
       throw UsageError(
-          fmt::format("video has {0} but save does not, expected --save …,{0}", name_of(output)));
+          fmt::format("video has {0} but save does not, expected `save` …,{0}", name_of(output)));
     }
   }
   if (options.crf < 0 || options.crf > kMaxCrf) {

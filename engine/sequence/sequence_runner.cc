@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/seconds_since.h"
 #include "engine/sequence/commit_queue.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/frame_feed.h"
@@ -26,10 +27,6 @@ namespace vantage {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Of this process, all threads.
 double processor_seconds() {

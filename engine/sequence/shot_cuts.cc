@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "engine/image/intensity_rows.h"
+#include "engine/order_statistics.h"
 
 namespace vantage {
 namespace {
@@ -97,10 +98,8 @@ std::vector<int> ShotCuts::shot_starts() const {
           around.push_back(step(s));
         }
       }
-      const auto median = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-      std::nth_element(around.begin(), median, around.end());
       const bool is_cut = step(t) > kUnrelated &&
-                          (around.empty() || step(t) > kStandsOut * *median) &&
+                          (around.empty() || step(t) > kStandsOut * upper_median(around)) &&
                           (t < 2 || long_step(t) > kUnrelated) &&
                           (t + 1 == frames || long_step(t + 1) > kUnrelated);
       if (!is_cut) {

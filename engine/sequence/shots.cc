@@ -7,8 +7,10 @@
 #include <set>
 
 #include "engine/error.h"
+#include "engine/image/finite_values.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/order_statistics.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/sequence/shot_cuts.h"
 #include "engine/synthesis/view_synthesizer.h"
@@ -30,28 +32,18 @@ class DisparitySamples {
     // At once: growing would take twice the memory.
     values_.reserve(kMaxSamples * static_cast<std::size_t>(map_px.width()) *
                     static_cast<std::size_t>(map_px.height()));
-    for (int y = 0; y < map_px.height(); ++y) {
-      std::copy_if(map_px.row(y), map_px.row(y) + map_px.width(), std::back_inserter(values_),
-                   [](float d) { return std::isfinite(d); });
-    }
+    add_finite_values(map_px, values_);
   }
   [[nodiscard]] bool empty() const { return values_.empty(); }
   [[nodiscard]] PreviewRange range() {
-    const float min = percentile(kOutside);
-    const float max = percentile(1 - kOutside);
+    const float min = percentile(values_, kOutside);
+    const float max = percentile(values_, 1 - kOutside);
     const float margin = std::max(kMinWideningPx, kWidening * (max - min));
     return {min - margin, max + margin};
   }
   void clear() { values_.clear(); }
 
  private:
-  [[nodiscard]] float percentile(double share) {
-    const auto place =
-        static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values_.size() - 1)));
-    std::nth_element(values_.begin(), values_.begin() + place, values_.end());
-    return values_[static_cast<std::size_t>(place)];
-  }
-
   std::vector<float> values_;
 };
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <variant>
 
+#include "engine/image/remapped_row.h"
 #include "engine/view_geometry/new_view.h"
 #include "engine/view_geometry/trifocal_rectification.h"
-#include "kernels/bicubic_remap/bicubic_remap.h"
 
 namespace vantage {
 namespace {
@@ -51,15 +51,7 @@ Image<T> moved_by(const Image<T>& source, const Eigen::Matrix3d& source_from_res
         x_px[x] = position.x();
         y_px[x] = position.y();
       }
-      kernels::remap_bicubic_row({.pixels = source.row(0),
-                                  .stride = static_cast<std::ptrdiff_t>(source.view().stride()),
-                                  .width = source.width(),
-                                  .height = source.height(),
-                                  .channels = source.channels(),
-                                  .x_px = x_px,
-                                  .y_px = y_px,
-                                  .count = width_px},
-                                 result.row(y));
+      remap_row(source, x_px, y_px, y, result);
     }
   });
   return result;

@@ -18,13 +18,12 @@
 #include "engine/synthesis/view_finisher.h"
 #include "engine/synthesis/view_sampling.h"
 #include "engine/synthesis/warped_pair_layout.h"
+#include "engine/view_geometry/view_pose.h"
 #include "kernels/intensity_sums/intensity_sums.h"
 #include "kernels/view_blend/view_blend.h"
 
 namespace vantage {
 namespace {
-
-constexpr double kFarthestView = 16;  // baselines
 
 void require_size_of_left(const Photograph& left, const char* what, int width, int height) {
   if (width != left.width() || height != left.height()) {
@@ -148,9 +147,9 @@ void with_source(const PairOfMaps& pair, const Body& body) {
 template <typename Body>
 void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, double view_x,
                     Execution& execution, const Body& body) {
-  if (!(std::abs(view_x) <= kFarthestView)) {
-    throw UsageError(fmt::format("view is at {} baselines, expected -{}..{}", view_x, kFarthestView,
-                                 kFarthestView));
+  if (!(std::abs(view_x) <= kMaxViewDistance)) {
+    throw UsageError(fmt::format("view is at {} baselines, expected -{}..{}", view_x,
+                                 kMaxViewDistance, kMaxViewDistance));
   }
   with_source(pair, [&]<typename T>(const StereoSource<T>& source) {
     const RowPairWarper<T> warper(source, options, view_x);

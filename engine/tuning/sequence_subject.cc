@@ -14,7 +14,6 @@
 namespace vantage {
 namespace {
 
-constexpr int kMaxInFlight = 64;
 // Enough for the pipeline to be full most of the time.
 constexpr int kMinFrames = 8;
 
@@ -22,7 +21,8 @@ constexpr int kMinFrames = 8;
 
 SequenceSubject::SequenceSubject(const MatchSubjectOptions& options, const TuningPair& pair)
     : MatchSubject(options, pair),
-      frames_(std::clamp(2 * default_frames_in_flight(threads_of({})), kMinFrames, kMaxInFlight)) {
+      frames_(std::clamp(2 * default_frames_in_flight(threads_of({})), kMinFrames,
+                         kMaxFramesInFlight)) {
   encode_photograph("left.png", pair.left, left_file_);
   encode_photograph("right.png", pair.right, right_file_);
 }

@@ -189,9 +189,4 @@ std::vector<ColmapImage> read_colmap_model(const fs::path& folder) {
   return model;
 }
 
-bool is_colmap_model(const fs::path& folder) {
-  std::error_code ignored;
-  return fs::exists(folder / "cameras.txt", ignored) || fs::exists(folder / "cameras.bin", ignored);
-}
-
 }  // namespace vantage

@@ -35,7 +35,4 @@ std::vector<ColmapImage> parse_colmap_images(std::string_view text, const std::s
 /// binary models. Thread rule: may be called concurrently.
 std::vector<ColmapImage> read_colmap_model(const std::filesystem::path& folder);
 
-/// Whether a folder holds a COLMAP model, as text or binary.
-bool is_colmap_model(const std::filesystem::path& folder);
-
 }  // namespace vantage

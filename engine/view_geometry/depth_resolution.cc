@@ -7,6 +7,9 @@
 #include <limits>
 #include <vector>
 
+#include "engine/image/finite_values.h"
+#include "engine/order_statistics.h"
+
 namespace vantage {
 
 std::optional<double> depth(const DepthScale& scale, double disparity_px) {
@@ -28,18 +31,14 @@ std::optional<double> depth_resolution(const DepthScale& scale, double step_px,
 }
 
 std::optional<DisparityQuantiles> disparity_quantiles(ImageView<const float> disparity_px) {
-  std::vector<float> known;
-  for (int y = 0; y < disparity_px.height(); ++y) {
-    std::copy_if(disparity_px.row(y), disparity_px.row(y) + disparity_px.width(),
-                 std::back_inserter(known), [](float d) { return std::isfinite(d); });
-  }
+  std::vector<float> known = finite_values(disparity_px);
   if (known.empty()) {
     return std::nullopt;
   }
-  const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), middle, known.end());
-  const auto [smallest, largest] = std::minmax_element(known.begin(), known.end());
-  return DisparityQuantiles{*largest, *middle, *smallest};
+  const auto [farthest, nearest] = std::minmax_element(known.begin(), known.end());
+  DisparityQuantiles quantiles{.nearest_px = *nearest, .farthest_px = *farthest};
+  quantiles.median_px = upper_median(known);
+  return quantiles;
 }
 
 void depth_resolution_map(ImageView<const float> disparity_px, const DepthScale& scale,

@@ -8,11 +8,10 @@
 #include <initializer_list>
 
 #include "engine/error.h"
+#include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
 namespace {
-
-constexpr double kFarthestView = 16;  // baselines
 
 // The right image's pixel (x, y) shows what the left one shows at x + d.
 ViewWarp from_right(const ViewWarp& from_left) {
@@ -43,9 +42,9 @@ bool ViewWarp::is_translation() const {
 }
 
 NewView baseline_view(double view_x, double view_y, int width_px, int height_px) {
-  if (!(std::abs(view_x) <= kFarthestView) || !(std::abs(view_y) <= kFarthestView)) {
+  if (!(std::abs(view_x) <= kMaxViewDistance) || !(std::abs(view_y) <= kMaxViewDistance)) {
     throw UsageError(fmt::format("view is at {}, {} baselines, expected both within -{}..{}",
-                                 view_x, view_y, kFarthestView, kFarthestView));
+                                 view_x, view_y, kMaxViewDistance, kMaxViewDistance));
   }
   NewView view;
   view.width_px = width_px;
@@ -65,10 +64,10 @@ NewView camera_view(const RectifiedPair& pair, const PosedCamera& camera) {
   view.height_px = camera.height_px;
   view.distance_from_left = centre.norm() / pair.baseline;
   view.distance_from_right = (centre - Eigen::Vector3d(pair.baseline, 0, 0)).norm() / pair.baseline;
-  if (!(std::min(view.distance_from_left, view.distance_from_right) <= kFarthestView)) {
+  if (!(std::min(view.distance_from_left, view.distance_from_right) <= kMaxViewDistance)) {
     throw Error(fmt::format(
         "camera of the new view is {:.4g} baselines from the left camera, expected at most {}",
-        view.distance_from_left, kFarthestView));
+        view.distance_from_left, kMaxViewDistance));
   }
   // With d + doffs = f b / Z: λ (u, v, 1) = K₃ R₃ K⁻¹ (x, y, 1) + (d + doffs) K₃ t₃ / (f b).
   const Eigen::Vector3d parallax =

@@ -13,9 +13,6 @@ enum class EvidenceNorm {
   kMax,    ///< L∞
   kAcross  ///< |x|: the x component alone (5.8)
 };
-inline constexpr EvidenceNorm kAllEvidenceNorms[] = {EvidenceNorm::kL2, EvidenceNorm::kOctagon,
-                                                     EvidenceNorm::kL1, EvidenceNorm::kMax,
-                                                     EvidenceNorm::kAcross};
 
 /// Weights of the octagonal norm.
 inline constexpr float kOctagonSum = 0.3978247F;

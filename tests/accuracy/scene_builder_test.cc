@@ -408,7 +408,7 @@ TEST(EdgeCheck, SaysWhyLittleMatches) {
   EXPECT_THAT(error_with(0.25, 1),
               AllOf(HasSubstr("25 % of the pixels match, expected at least 30 %"),
                     HasSubstr("the images look exchanged (100 % of 325 points")));
-  EXPECT_THAT(error_with(0.25, 0.5), HasSubstr("--disparities (0:100 was searched)"));
+  EXPECT_THAT(error_with(0.25, 0.5), HasSubstr("`disparities` (0:100 was searched)"));
   EXPECT_NO_THROW(require_matched({0.5, 0.31}, {0, 100}, std::nullopt));
 }
 
@@ -444,7 +444,7 @@ TEST_F(SceneBuilderTest, SaysWhatIsWrong) {
   SceneBuildOptions options;
   options.match.disparities_y = DisparityRange{-1, 1};
   options.match.method = MatchMethod::kGradient;
-  EXPECT_THAT(error_of([&] { options.validate(); }), HasSubstr("--disparities-y"));
+  EXPECT_THAT(error_of([&] { options.validate(); }), HasSubstr("disparities-y is set"));
 }
 
 }  // namespace scene_builder_test

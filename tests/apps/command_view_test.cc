@@ -7,9 +7,9 @@
 #include <string>
 #include <variant>
 
-#include "engine/io/base64.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
+#include "tests/decoded_base64.h"
 
 namespace vantage {
 namespace command_view_test {
@@ -69,7 +69,7 @@ class ViewCommand : public PairTest {
   [[nodiscard]] Image<std::uint8_t> picture_in(const std::string& page,
                                                const std::string& name) const {
     const std::string element = between(page, "id=\"" + name + "\"", ">");
-    const auto bytes = decode_base64(between(element, "base64,", "\""));
+    const auto bytes = test::decoded_base64(between(element, "base64,", "\""));
     const std::string file = folder_ / (name + ".png");
     write_file(file, {bytes.begin(), bytes.end()});
     return std::move(std::get<Image<std::uint8_t>>(read_photograph(file).pixels));

@@ -270,7 +270,7 @@ TEST_F(PosedScene, SaysWhatIsWrong) {
   EXPECT_THAT(problem({"--poses", model_, "--grid", "2x2"}), HasSubstr("grid"));
   EXPECT_THAT(problem({"--poses", model_, "--intrinsics", model_ + "/cameras.txt"}),
               HasSubstr("--intrinsics is given with a COLMAP model"));
-  EXPECT_THAT(problem({"--poses", model_, "--neighbours", "0"}), HasSubstr("--neighbours is 0"));
+  EXPECT_THAT(problem({"--poses", model_, "--neighbours", "0"}), HasSubstr("neighbours is 0"));
   EXPECT_THAT(problem({"--neighbours", "3"}), HasSubstr("neighbours"));
   fs::rename(images_ + "/3.png", images_ + "/x.png");
   EXPECT_THAT(problem({"--poses", model_}), HasSubstr("3.png is missing, expected an image of"));

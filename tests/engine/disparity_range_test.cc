@@ -217,7 +217,7 @@ TEST(DisparityRange, SaysThatThereIsNoEvidence) {
     return test::error_of([&] { estimate_disparity_range(left, right, execution); });
   };
   EXPECT_THAT(error_of(constant, constant), HasSubstr("no disparity range can be estimated"));
-  EXPECT_THAT(error_of(constant, constant), HasSubstr("--disparities MIN:MAX"));
+  EXPECT_THAT(error_of(constant, constant), HasSubstr("`disparities` MIN:MAX"));
   EXPECT_THAT(error_of(test::noise<std::uint8_t>(200, 100, 1, 1),
                        test::noise<std::uint8_t>(200, 100, 1, 2)),
               HasSubstr("no disparity range can be estimated"));

@@ -130,7 +130,7 @@ TEST_F(RunJournalTest, TheIdentityIsKept) {
 
 TEST_F(RunJournalTest, ARunIsNotBegunTwiceUnasked) {
   open(JournalOpening::kNew);
-  EXPECT_THAT(refusal(JournalOpening::kNew), HasSubstr("expected --resume"));
+  EXPECT_THAT(refusal(JournalOpening::kNew), HasSubstr("expected `resume`"));
   EXPECT_EQ(refusal(JournalOpening::kResume), "");
   {
     RunJournal journal = open(JournalOpening::kResume);
@@ -171,7 +171,7 @@ TEST_F(RunJournalTest, AJournalThatCannotBeReadIsNotAnEmptyOne) {
 TEST_F(RunJournalTest, PartsJoinARunTheyAgreeWith) {
   open(JournalOpening::kNew, "1-of-2");
   EXPECT_EQ(refusal(JournalOpening::kNew, "2-of-2"), "");
-  EXPECT_THAT(refusal(JournalOpening::kNew, "2-of-2"), HasSubstr("expected --resume"));
+  EXPECT_THAT(refusal(JournalOpening::kNew, "2-of-2"), HasSubstr("expected `resume`"));
   identity_.settings = R"({"format":"png","window":7})";
   EXPECT_THAT(refusal(JournalOpening::kNew, "3-of-3"), HasSubstr(R"(format was "pfm", now "png")"));
 }
@@ -180,7 +180,7 @@ TEST_F(RunJournalTest, DifferencesAreNamed) {
   open(JournalOpening::kNew);
   identity_.settings = R"({"format":"pfm","window":9,"crf":18})";
   EXPECT_THAT(refusal(JournalOpening::kResume),
-              HasSubstr("window was 7, now 9 (and 1 more); expected the same, --force"));
+              HasSubstr("window was 7, now 9 (and 1 more); expected the same, `force`"));
   // Sound that makes trouble may be left out later.
   identity_.settings = R"({"format":"pfm","window":7,"no-sound":true})";
   EXPECT_EQ(refusal(JournalOpening::kResume), "");

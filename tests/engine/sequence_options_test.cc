@@ -50,7 +50,7 @@ TEST(SequenceOptions, WhatIsWrongIsNamed) {
   EXPECT_THAT(refusal([](Options& o) { o.video = {SequenceOutput::kDisparity}; }),
               HasSubstr("a video cannot hold"));
   EXPECT_THAT(refusal([](Options& o) { o.video = {SequenceOutput::kPreview}; }),
-              HasSubstr("--save …,preview"));
+              HasSubstr("`save` …,preview"));
   EXPECT_THAT(refusal([](Options& o) { o.crf = 52; }), HasSubstr("crf is 52"));
   EXPECT_THAT(refusal([](Options& o) { o.chunk_frames = 0; }), HasSubstr("chunk-frames is 0"));
   EXPECT_THAT(refusal([](Options& o) { o.stereo_views_x = {0, 17}; }), HasSubstr("stereo-views"));

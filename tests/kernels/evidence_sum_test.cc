@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/kernels/evidence_norms.h"
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {

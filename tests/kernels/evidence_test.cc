@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/kernels/evidence_norms.h"
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 

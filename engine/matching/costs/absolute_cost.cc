@@ -50,7 +50,7 @@ MatchingCost absolute_cost() {
 MatchingCost truncated_cost() {
   return {.key = MatchCost::kTruncated,
           .name = "truncated",
-          .description = "absolute difference, at most --truncation",
+          .description = "absolute difference, at most the truncation",
           .options = {"match-exposure", "truncation"},
           .jump_limit = 10,
           .occlusion_penalty = 8,

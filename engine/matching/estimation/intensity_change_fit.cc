@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/order_statistics.h"
+
 namespace vantage {
 namespace {
 
@@ -66,24 +68,16 @@ double residual(const IntensityPair& pair, const IntensityChange& line) {
   return pair.reference - (line.gain * pair.other + line.offset);
 }
 
-/// The quantile at `kTenths` / 10 of the residuals.
-template <std::size_t kTenths>
-double quantile(std::span<float> residuals) {
-  const auto at = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() * kTenths / 10);
-  std::nth_element(residuals.begin(), at, residuals.end());
-  return *at;
-}
-
 }  // namespace
 
 double robust_sigma(std::span<float> residuals) {
   constexpr double kOfMedian = 1.4826;
-  return kOfMedian * quantile<5>(residuals);
+  return kOfMedian * static_cast<double>(upper_median(residuals));
 }
 
 double noise_sigma(std::span<float> residuals) {
   constexpr double kSigmas = 1.6449;  // 90 % quantile of a unit Gaussian's magnitudes
-  return quantile<9>(residuals) / kSigmas;
+  return static_cast<double>(value_of_rank(residuals, residuals.size() * 9 / 10)) / kSigmas;
 }
 
 std::optional<IntensityChange> fit_intensity_change(std::span<const IntensityPair> pairs) {
