@@ -20,10 +20,7 @@ void add_disparity_resolution_setting(Settings& settings, std::optional<double>&
 }
 
 void require_disparity_resolution(const std::optional<double>& step_px) {
-  if (step_px && !(*step_px > 0 && std::isfinite(*step_px))) {
-    throw UsageError(
-        fmt::format("disparity-resolution is {}, expected a number above 0", *step_px));
-  }
+  require_above_0("disparity-resolution", step_px);
 }
 
 void add_cloud_settings(Settings& settings, CloudOptions& options) {

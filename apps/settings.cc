@@ -1,7 +1,6 @@
 #include "apps/settings.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <stdexcept>
 
 #include "apps/option_reference.h"
+#include "apps/setting_help.h"
 #include "apps/suggestions.h"
 #include "apps/toml_file.h"
 #include "engine/error.h"
@@ -20,130 +20,6 @@ namespace vantage::apps {
 namespace {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-std::string upper_case(std::string text) {
-  for (char& letter : text) {
-    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  }
-  return text;
-}
-
-std::string shown_default(const SettingValue& value) {
-  if (value.is_string()) {
-    return value.get<std::string>();
-  }
-  return value.is_null() || value.is_array() || value.is_boolean() ? "" : value.dump();
-}
-
-std::string option_names(const Setting& setting) {
-  if (setting.positional) {
-    return setting.value_name;
-  }
-  const std::string short_name =
-      setting.short_name == 0 ? "" : fmt::format("-{},", setting.short_name);
-  return short_name + "--" + setting.name;
-}
-
-/// `text` in lines that fit beside the names of the options, or are `columns` wide.
-std::string wrapped(const std::string& text, std::size_t columns = 70) {
-  std::string lines;
-  for (const std::string& paragraph : split(text, '\n')) {
-    lines += lines.empty() ? "" : "\n";
-    std::size_t column = 0;
-    for (const std::string& word : split(paragraph, ' ')) {
-      if (column > 0) {
-        const bool fits = column + 1 + word.size() <= columns;
-        lines += fits ? ' ' : '\n';
-        column = fits ? column + 1 : 0;
-      }
-      lines += word;
-      column += word.size();
-    }
-  }
-  return lines;
-}
-
-/// Whether the option and its value are too long for one line of the help.
-bool is_long(const Setting& setting) {
-  constexpr std::size_t kMaxColumns = 80;
-  return setting.name.size() + setting.value_name.size() > kMaxColumns;
-}
-
-CLI::Option* add_option(CLI::App& app, const Setting& setting) {
-  CLI::Option* option = nullptr;
-  const std::string help =
-      wrapped(is_long(setting) ? fmt::format("{}. NAME: {}", setting.help,
-                                             fmt::join(split(setting.value_name, '|'), ", "))
-                               : setting.help);
-  if (setting.flag) {
-    option = app.add_flag(option_names(setting), help);
-  } else {
-    // CLI11 only collects the texts; they are applied after the configuration file.
-    option = app.add_option(
-        option_names(setting), [](const CLI::results_t&) { return true; }, help);
-    option->type_name(setting.positional ? "" : is_long(setting) ? "NAME" : setting.value_name);
-    option->default_str(shown_default(setting.get()));
-    if (setting.positional && setting.list) {
-      option->expected(-1);  // all that follow
-    }
-  }
-  option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)->group(setting.group);
-  return option;
-}
-
-/// Prints the help of `app`, whose `options` are those of `settings`: the settings in `names` under
-/// one heading, or all in their groups when there are no names.
-void print_help(CLI::App& app, const std::vector<CLI::Option*>& options,
-                const std::deque<Setting>& settings, const std::vector<std::string_view>& names) {
-  if (!names.empty()) {
-    for (CLI::Option* const option : app.get_options()) {
-      option->group("Options");
-    }
-  }
-  if (!names.empty()) {
-    app.get_option("--help-json")->group("");
-  }
-  for (std::size_t i = 0; i < options.size(); ++i) {
-    options[i]->required(settings[i].required);  // only now: settings are also read from a file
-    if (!names.empty() && std::ranges::find(names, settings[i].name) == names.end()) {
-      options[i]->group("");  // hidden
-    }
-  }
-  std::string text = app.help();
-  for (std::size_t at = text.find("\n\n\n"); at != std::string::npos;
-       at = text.find("\n\n\n", at)) {
-    text.erase(at, 1);  // one blank line between groups
-  }
-  std::fputs(text.c_str(), stdout);
-}
-
-/// Appends the options of `app` that every command has, which are not those of its settings.
-void append_general_options(const CLI::App& app, const std::vector<CLI::Option*>& of_settings,
-                            SettingValue& reference) {
-  for (const CLI::Option* const option : app.get_options()) {
-    if (std::ranges::find(of_settings, option) != of_settings.end()) {
-      continue;
-    }
-    Setting setting;
-    setting.positional = option->get_positional();
-    setting.name = setting.positional ? option->get_name() : option->get_lnames().front();
-    setting.short_name = option->get_snames().empty() ? '\0' : option->get_snames().front().front();
-    setting.value_name = option->get_type_name();
-    setting.help = option->get_description();
-    setting.group = option->get_group();
-    setting.flag = option->get_items_expected_max() == 0;
-    setting.get = [] { return SettingValue(); };
-    reference.push_back(option_reference(setting, true));
-  }
-}
-
-std::string examples_text(const std::vector<std::string_view>& examples) {
-  std::string text = examples.empty() ? "" : "Examples:";
-  for (const std::string_view example : examples) {
-    text += fmt::format("\n  {}", example);
-  }
-  return text;
-}
 
 [[noreturn]] void reject_option(const std::string& command, const std::string& argument,
                                 const std::vector<std::string>& known) {
@@ -171,6 +47,43 @@ void set_value(const Setting& setting, const SettingValue& value, const std::str
     throw UsageError(fmt::format("{} {}", shown_name, error.what()));
   }
 }
+
+/// Options that every command has.
+struct GeneralOptions {
+  std::string config_path;
+  std::string job_file;
+  bool print_config = false;
+  bool help_json = false;
+
+  void add_to(CLI::App& app, bool takes_job_file, bool has_short_help) {
+    app.add_option("--config", config_path,
+                   "Read settings from this TOML file; options override it")
+        ->type_name("FILE.toml")
+        ->group("Settings");
+    app.add_flag("--print-config", print_config, "Write all settings in effect as TOML and stop")
+        ->group("Settings");
+    if (takes_job_file) {
+      app.add_option("JOB", job_file, "Read settings from this TOML file, as --config does")
+          ->type_name("")
+          ->group("Settings");
+    }
+    app.set_help_flag("-h,--help", has_short_help ? "Print the most used options and exit"
+                                                  : "Print this help and exit")
+        ->group("Settings");
+    app.set_help_all_flag("--help-all", "Print all options and exit")->group("Settings");
+    app.add_flag("--help-json", help_json, "Print all options as JSON and exit")->group("Settings");
+  }
+
+  /// The file to read settings from; empty: none. Throws UsageError for two.
+  [[nodiscard]] const std::string& file() const {
+    if (!job_file.empty() && !config_path.empty()) {
+      throw UsageError(
+          fmt::format("settings are to be read from '{}' and from '{}', expected one file",
+                      job_file, config_path));
+    }
+    return job_file.empty() ? config_path : job_file;
+  }
+};
 
 /// CLI11 accepts "-7" as a number, and so as a positional argument; here positional arguments are
 /// files.
@@ -216,93 +129,6 @@ Setting& Settings::add(std::string name, std::string value_name, std::string hel
   setting.group = group_;
   setting.changes_results = group_changes_results_;
   return settings_.emplace_back(std::move(setting));
-}
-
-Setting& Settings::flag(std::string name, bool& field, std::string help) {
-  Setting& setting = add(std::move(name), "", std::move(help));
-  setting.flag = true;
-  setting.set = [&field](const SettingValue& value) { field = to_truth(value); };
-  setting.get = [&field] { return field; };
-  return setting;
-}
-
-Setting& Settings::integer(std::string name, int& field, std::string value_name, std::string help) {
-  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
-  setting.set = [&field](const SettingValue& value) { field = to_integer(value); };
-  setting.get = [&field] { return field; };
-  return setting;
-}
-
-Setting& Settings::number(std::string name, double& field, std::string value_name,
-                          std::string help) {
-  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
-  setting.set = [&field](const SettingValue& value) { field = to_number(value); };
-  setting.get = [&field] { return field; };
-  return setting;
-}
-
-namespace {
-
-template <typename T, typename Parse>
-void bind_optional(Setting& setting, std::optional<T>& field, const std::string& unset_name,
-                   const Parse& parse) {
-  setting.set = [&field, unset_name, parse](const SettingValue& value) {
-    if (value.is_string() && value.get_ref<const std::string&>() == unset_name) {
-      field.reset();
-      return;
-    }
-    field = parse(value);
-  };
-  setting.get = [&field, unset_name]() -> SettingValue {
-    return field ? SettingValue(*field) : SettingValue(unset_name);
-  };
-}
-
-}  // namespace
-
-Setting& Settings::integer(std::string name, std::optional<int>& field, std::string value_name,
-                           std::string help, const std::string& unset_name) {
-  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
-  bind_optional(setting, field, unset_name, to_integer);
-  return setting;
-}
-
-Setting& Settings::number(std::string name, std::optional<double>& field, std::string value_name,
-                          std::string help, const std::string& unset_name) {
-  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
-  bind_optional(setting, field, unset_name, to_number);
-  return setting;
-}
-
-Setting& Settings::text(std::string name, std::string& field, std::string value_name,
-                        std::string help) {
-  Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
-  setting.set = [&field](const SettingValue& value) { field = to_text(value); };
-  setting.get = [&field]() -> SettingValue {
-    return field.empty() ? SettingValue() : SettingValue(field);
-  };
-  return setting;
-}
-
-Setting& Settings::path(std::string name, std::string& field, std::string value_name,
-                        std::string help) {
-  Setting& setting = text(std::move(name), field, std::move(value_name), std::move(help));
-  setting.path = PathRole::kOther;
-  return setting;
-}
-
-Setting& Settings::input_path(std::string name, std::string& field, std::string value_name,
-                              std::string help) {
-  Setting& setting = path(std::move(name), field, std::move(value_name), std::move(help));
-  setting.path = PathRole::kInput;
-  return setting;
-}
-
-Setting& Settings::positional(std::string name, std::string& field, std::string help) {
-  Setting& setting = input_path(std::move(name), field, "", std::move(help));
-  setting.value_name = upper_case(setting.name);
-  setting.positional = true;
-  return setting;
 }
 
 SettingValue Settings::values() const {
@@ -374,9 +200,6 @@ void Settings::set_short_help(std::vector<std::string_view> names,
 bool Settings::read(const std::vector<std::string>& arguments) {
   CLI::App app(wrapped(summary_, 100), "vantage " + command_);
   app.allow_extras();
-  std::string config_path;
-  bool print_config = false;
-  bool help_json = false;
   std::vector<std::string> known = {"--help", "--help-all", "--help-json", "--config",
                                     "--print-config"};
   std::vector<CLI::Option*> options;
@@ -389,23 +212,8 @@ bool Settings::read(const std::vector<std::string>& arguments) {
       known.push_back(fmt::format("-{}", setting.short_name));
     }
   }
-  app.add_option("--config", config_path, "Read settings from this TOML file; options override it")
-      ->type_name("FILE.toml")
-      ->group("Settings");
-  app.add_flag("--print-config", print_config, "Write all settings in effect as TOML and stop")
-      ->group("Settings");
-
-  std::string job_file;
-  if (takes_job_file_) {
-    app.add_option("JOB", job_file, "Read settings from this TOML file, as --config does")
-        ->type_name("")
-        ->group("Settings");
-  }
-  app.set_help_flag("-h,--help", short_help_.empty() ? "Print this help and exit"
-                                                     : "Print the most used options and exit")
-      ->group("Settings");
-  app.set_help_all_flag("--help-all", "Print all options and exit")->group("Settings");
-  app.add_flag("--help-json", help_json, "Print all options as JSON and exit")->group("Settings");
+  GeneralOptions general;
+  general.add_to(app, takes_job_file_, !short_help_.empty());
   app.footer(examples_text(examples_));
   std::vector<std::string> reversed = arguments;  // as CLI11 wants them
   std::reverse(reversed.begin(), reversed.end());
@@ -423,7 +231,7 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     throw UsageError(first_line(error.what()));
   }
   require_known(command_, app.remaining(), known);
-  if (help_json) {
+  if (general.help_json) {
     SettingValue reference =
         command_reference(command_, summary_, settings_, short_help_, examples_);
     append_general_options(app, options, reference["options"]);
@@ -431,12 +239,7 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     return false;
   }
 
-  if (!job_file.empty() && !config_path.empty()) {
-    throw UsageError(
-        fmt::format("settings are to be read from '{}' and from '{}', expected one file", job_file,
-                    config_path));
-  }
-  if (const std::string& path = job_file.empty() ? config_path : job_file; !path.empty()) {
+  if (const std::string& path = general.file(); !path.empty()) {
     apply_config(path);
   }
   for (std::size_t i = 0; i < settings_.size(); ++i) {
@@ -458,7 +261,7 @@ bool Settings::read(const std::vector<std::string>& arguments) {
     set_.insert(setting.name);
   }
 
-  if (print_config) {
+  if (general.print_config) {
     std::fputs(toml().c_str(), stdout);
     return false;
   }

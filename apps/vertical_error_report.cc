@@ -58,7 +58,7 @@ SettingValue vertical_error_values(const VerticalError& error) {
           {"mean_px", error.mean_px},
           {"mean_absolute_px", error.mean_absolute_px},
           {"percentile_95_px", error.percentile_95_px},
-          {"largest_px", error.largest_px},
+          {"largest_px", error.max_px},
           {"systematic_px", error.systematic_px},
           {"more_bad_percent", more_bad_percent(error.systematic_px)},
           {"negative_disparity_share", error.negative_share}};
@@ -66,7 +66,7 @@ SettingValue vertical_error_values(const VerticalError& error) {
 
 std::string vertical_error_text(const VerticalError& error) {
   return fmt::format("{:.2f} px RMS (mean {:.2f}, 95 % within {:.2f}, at most {:.2f}; {} points)",
-                     error.rms_px, error.mean_px, error.percentile_95_px, error.largest_px,
+                     error.rms_px, error.mean_px, error.percentile_95_px, error.max_px,
                      error.inliers);
 }
 
@@ -79,7 +79,7 @@ std::string exchanged_text(const VerticalError& error) {
 
 std::string disparities_text(const VerticalError& error) {
   return fmt::format("{}:{}", static_cast<int>(std::floor(error.min_disparity_px)),
-                     static_cast<int>(std::ceil(error.largest_disparity_px)));
+                     static_cast<int>(std::ceil(error.max_disparity_px)));
 }
 
 }  // namespace vantage::apps

@@ -27,6 +27,7 @@
 #include "engine/matching/pair_matcher.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/matching/unrectified/unrectified_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
 
 // Cameras, and unrectified pairs.
@@ -39,8 +40,17 @@
 #include "engine/rectification/uncalibrated_rig.h"
 #include "engine/rectification/vertical_error.h"
 
-// New views of pairs, and of scenes of many images.
+// Depths, point clouds and surfaces of maps, and their files.
+#include "engine/io/depth_io.h"
+#include "engine/reprojection/map_camera.h"
+#include "engine/reprojection/ply_file.h"
+#include "engine/reprojection/point_cloud.h"
+#include "engine/view_geometry/depth_resolution.h"
+
+// New views of pairs; views and point clouds of scenes of many images.
+#include "engine/scene_graph/posed_viewer.h"
 #include "engine/scene_graph/scene_builder.h"
+#include "engine/scene_graph/scene_cloud.h"
 #include "engine/scene_graph/scene_viewer.h"
 #include "engine/synthesis/synthesis_options.h"
 #include "engine/synthesis/view_renderer.h"

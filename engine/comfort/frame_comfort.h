@@ -24,8 +24,7 @@ inline constexpr int kComfortWhole = 10000;
 struct FrameComfort {
   int width_px = 0;
   int height_px = 0;
-  int matched =
-      0;  ///< share of the pixels that were matched, in 1/kComfortWhole; the rest is of them
+  int matched = 0;  ///< share of the pixels with a match, in 1/kComfortWhole
   std::array<int, kComfortShares.size()> disparity = {};  ///< in 1/kComfortPerPixel px
   /// At the left and at the right border: the share of rows where something in front of the screen
   /// is cut, in 1/kComfortWhole, and its largest disparity, in 1/kComfortPerPixel px.

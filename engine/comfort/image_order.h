@@ -15,7 +15,7 @@ struct OrderVotes {
 /// farther one: they are hidden from the other eye. Where their colour continues on that side, the
 /// order is right; where it continues on the nearer side, the images are exchanged, because then
 /// near and far are. `map`: of `image`, which is that of `side`. Places without a clear difference
-/// do not count.
+/// do not count. Thread rule: pure.
 OrderVotes order_of_images(const Photograph& image, const MatchedMap& map, Side side);
 
 }  // namespace vantage

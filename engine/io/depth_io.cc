@@ -34,7 +34,7 @@ void write_depth(const std::filesystem::path& path, ImageView<const float> depth
 
 double largest_depth_m(const std::filesystem::path& path) {
   const MapFormat* const format = find_map_format(path, MapContent::kDepth);
-  return format != nullptr && !format->holds_any_value ? kLargestIntegerDepth_m
+  return format != nullptr && !format->holds_any_value ? kMaxIntegerDepth_m
                                                        : std::numeric_limits<double>::infinity();
 }
 

@@ -16,10 +16,11 @@ void encode_depth(const std::filesystem::path& path, ImageView<const float> dept
 /// Writes by extension (map_formats.h): 16-bit .png in millimetres (0 = unknown; depths below half
 /// a millimetre are stored as 1), or .pfm (+inf = unknown), .tiff, .exr, .npy (NaN) in metres.
 /// Writes atomically. Throws UsageError for another extension, Error when the file cannot be
-/// written or a depth exceeds kLargestIntegerDepth_m in a PNG.
+/// written or a depth exceeds kMaxIntegerDepth_m in a PNG. Thread rule: may be called concurrently
+/// for different files.
 void write_depth(const std::filesystem::path& path, ImageView<const float> depth_m);
 
-/// The largest depth that a file named `path` holds; infinity if there is no limit.
+/// The maximum depth that a file named `path` holds; infinity if there is no limit.
 double largest_depth_m(const std::filesystem::path& path);
 
 }  // namespace vantage

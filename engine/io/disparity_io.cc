@@ -103,7 +103,7 @@ void write_disparity(const std::filesystem::path& path, ImageView<const float> d
 void require_holds_search(const std::filesystem::path& path, int min_px, int max_px) {
   const MapFormat* const format = find_map_format(path, MapContent::kDisparity);
   if (format != nullptr && !format->holds_any_value &&
-      (min_px < 0 || max_px * kIntegerDisparityScale > kLargestIntegerDisparity)) {
+      (min_px < 0 || max_px * kIntegerDisparityScale > kMaxIntegerDisparity)) {
     throw UsageError(
         fmt::format("{} is a 16-bit PNG, which holds disparities from 0 to 255.99, but the search "
                     "range is {}:{}; expected {}, which have no limits, or `disparities` MIN:MAX "

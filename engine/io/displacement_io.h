@@ -17,7 +17,7 @@ namespace vantage {
 /// 1e10), .npy (shape (height, width, 2), unknown = NaN), .tiff/.exr (float, three channels R = u,
 /// G = v, B = 1 where known; unknown = 0, 0, 0). NaN and ±inf in either component are unknown.
 /// Writes atomically. Throws UsageError for another extension, Error when the file cannot be
-/// written.
+/// written. Thread rule: may be called concurrently for different files.
 void write_displacements(const std::filesystem::path& path, const DisplacementView& displacements,
                          Side side);
 

@@ -80,7 +80,7 @@ void depth_as_png(const fs::path& path, ImageView<const float> depth_m, Bytes& b
         throw Error(fmt::format(
             "cannot write {}: depth {} m at pixel ({}, {}) does not fit a 16-bit PNG of "
             "millimetres, expected at most {}, or a file in {}",
-            path.string(), depth, x, y, kLargestIntegerDepth_m,
+            path.string(), depth, x, y, kMaxIntegerDepth_m,
             listed_map_formats(MapContent::kConfidence)));
       }
       image.at(x, y) = static_cast<std::uint16_t>(millimetres);

@@ -28,7 +28,7 @@ enum class MapContent {
 struct MapFormat {
   std::string_view extension;  ///< lower case, with the dot
   bool is_listed = true;       ///< false: another spelling of a listed format
-  /// Holds any float and unknown pixels; false: only 0 to kLargestIntegerDisparity, and unknown
+  /// Holds any float and unknown pixels; false: only 0 to kMaxIntegerDisparity, and unknown
   /// pixels.
   bool holds_any_value = true;
   /// Null: does not support maps of one component.
@@ -47,11 +47,11 @@ struct MapFormat {
 
 /// Steps per pixel of a 16-bit PNG, and its maximum value in steps.
 constexpr double kIntegerDisparityScale = 256;
-constexpr double kLargestIntegerDisparity = 65535;
+constexpr double kMaxIntegerDisparity = 65535;
 
 /// Steps per metre of a depth in a 16-bit PNG; it holds depths up to 65.535 m.
 constexpr double kIntegerDepthScale = 1000;
-constexpr double kLargestIntegerDepth_m = 65535 / kIntegerDepthScale;
+constexpr double kMaxIntegerDepth_m = 65535 / kIntegerDepthScale;
 
 /// All formats, in the order of messages.
 std::span<const MapFormat> map_formats();

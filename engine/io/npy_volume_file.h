@@ -21,6 +21,9 @@ struct VolumeRows {
 /// for a two-dimensional search, (rows, columns, vertical candidates, horizontal candidates). Parts
 /// are written where they belong as they come; nothing is kept in memory. The file has its final
 /// name after commit().
+///
+/// Thread rule: write() may be called concurrently, as VolumeSink says; all else one thread at a
+/// time.
 class NpyVolumeFile final : public VolumeSink {
  public:
   /// `rows`: the only ones to store; empty: all. `transposed`: rows of the file are columns of the

@@ -26,7 +26,8 @@ struct MatchReport {
   double cells = 0;
   double finest_cells = 0;   ///< of `cells`, those of the finest level
   double finest_pixels = 0;  ///< width × height × maps computed to the finest level
-  /// Levels estimated from the images, if parameters ask for it; of several views, the first's.
+  /// Exposure and noise estimated from the images, if parameters ask for it; of several views, the
+  /// first's.
   std::optional<PairExposure> exposure;
   /// With MatchRequest::previous: the share of tiles that were searched, of the map with more.
   std::optional<double> searched_share;

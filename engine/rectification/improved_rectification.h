@@ -25,13 +25,13 @@ struct Rectification {
 
 /// Estimates again from points found in the images rectified by `rectifier`: there they are in
 /// nearly the same rows, so that wrong matches are easy to detect and positions are exact. Kept if
-/// rows correspond better. A baseline in metres is kept, if there is one.
+/// rows correspond better. A baseline in metres is kept, if there is one. Thread rule: pure.
 void improve_rectification(Rectification& rectification, Rectifier& rectifier,
                            const std::vector<PointMatch>& found,
                            const RectificationOptions& options);
 
 /// Throws Error, whose text starts with `inputs`, if the estimate does not rectify the images.
-/// `matches`: points found in the rectified images.
+/// `matches`: points found in the rectified images. Thread rule: pure.
 void require_success(const Rectification& rectification, std::size_t matches,
                      const std::string& inputs);
 

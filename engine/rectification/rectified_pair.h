@@ -64,6 +64,8 @@ struct RectifiedPair {
 /// Throws Error, naming the calibration's file, quantity and limit, for an image size that
 /// contradicts the calibration, a baseline more than 45° off the cameras' x axes (cameras one above
 /// or behind the other, or swapped), viewing directions 90° apart, or views with almost no overlap.
+///
+/// Thread rule: pure.
 RectifiedPair rectified_pair(const StereoCalibration& calibration, int width_px, int height_px,
                              const RectificationOptions& options = {});
 

@@ -123,10 +123,10 @@ std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& match
     result.mean_absolute_px += distance / count;
   }
   result.percentile_95_px = percentile(absolute, 0.95);
-  result.largest_px = *std::max_element(absolute.begin(), absolute.end());
+  result.max_px = *std::max_element(absolute.begin(), absolute.end());
   result.systematic_px = std::sqrt(smooth_sum_of_squares / count);
   result.min_disparity_px = percentile(disparities, 0.01);
-  result.largest_disparity_px = percentile(disparities, 0.99);
+  result.max_disparity_px = percentile(disparities, 0.99);
   const auto is_negative = [](double disparity) { return disparity < kNegative_px; };
   result.negative_share =
       static_cast<double>(std::count_if(disparities.begin(), disparities.end(), is_negative)) /

@@ -15,13 +15,13 @@ struct VerticalError {
   double mean_px = 0;  ///< of y_left − y_right, signed
   double mean_absolute_px = 0;
   double percentile_95_px = 0;  ///< 95 % of |y_left − y_right| are at most this
-  double largest_px = 0;
+  double max_px = 0;
   /// RMS of the part that varies smoothly over the image and with disparity: the error of the
   /// rectification. The rest of `rms_px` is measurement error of the points.
   double systematic_px = 0;
   /// Range of x_left − x_right without one per cent at each end.
   double min_disparity_px = 0;
-  double largest_disparity_px = 0;
+  double max_disparity_px = 0;
   /// Share of inliers whose disparity x_left − x_right is below −0.5 pixels. Almost 0 if infinity
   /// is at disparity 0, as in rectified images that are not shifted.
   double negative_share = 0;

@@ -11,6 +11,8 @@
 
 namespace vantage {
 
+// Thread rule: all functions here are pure; those with an `execution` run on its threads.
+
 /// The camera of a disparity map: what turns its pixels into points. A pixel (x, y) at depth Z is
 /// the point rotation · (matrix⁻¹ (x, y, 1) · Z) + centre. All axes are OpenCV's: x right, y down,
 /// z ahead. Lengths are in the unit of `scale.baseline`.

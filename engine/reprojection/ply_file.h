@@ -8,6 +8,8 @@
 
 namespace vantage {
 
+// Thread rule: all functions here are pure.
+
 /// Comments on the coordinates.
 inline constexpr std::string_view kCameraFrame =
     "metres in the frame of the rectified left camera: x right, y down, z ahead";

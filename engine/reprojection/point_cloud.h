@@ -11,6 +11,8 @@
 
 namespace vantage {
 
+// Thread rule: all functions here are pure; those with an `execution` run on its threads.
+
 inline constexpr int kMaxCloudStep_px = 1024;
 
 /// Which pixels of a map become points.

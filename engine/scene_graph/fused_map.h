@@ -24,7 +24,7 @@ struct MapOfEdge {
 /// - the farthest filled disparity of own edges, because the pixel is hidden from the neighbours;
 /// of other edges; NaN.
 /// Own edges go first because a pair's own maps fit its images best. `fused_px` has the same size.
-/// Identical for any execution.
+/// Identical for any execution. Thread rule: pure.
 void fuse_maps(std::span<const MapOfEdge> maps, double length, double tolerance_px,
                ImageView<float> fused_px, Execution& execution);
 

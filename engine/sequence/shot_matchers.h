@@ -19,13 +19,14 @@ struct ShotMatcher {
   StereoMatcher matcher;
 };
 
-/// The matchers of the shots that frames in flight belong to. Thread rule: concurrently.
+/// The matchers of the shots that frames in flight belong to. Thread rule: may be used
+/// concurrently.
 class ShotMatchers {
  public:
   /// `shots` is null if all frames are searched in the range of `options`. All must outlive this.
   ShotMatchers(const MatchOptions& options, const ShotTable* shots, Execution& execution);
 
-  /// The matcher of a frame; it lives as long as somebody holds it.
+  /// The matcher of a frame; it lives while referenced.
   [[nodiscard]] std::shared_ptr<const ShotMatcher> of(int frame) const;
   /// Memory of the latest one, see StereoMatcher.
   void add_memory_use(MemoryUse& use) const;

@@ -9,7 +9,8 @@
 namespace vantage {
 
 /// Pose of a new view over time: poses at key frames, interpolated by pose_between(), constant
-/// before the first and after the last. A fixed view has one key.
+/// before the first and after the last. A fixed view has one key. Thread rule: pure, as
+/// all functions here.
 struct ViewPath {
   struct Key {
     int frame = 0;

@@ -14,6 +14,8 @@ namespace vantage {
 /// New views are at most this far from a camera: in baselines of a pair, in edges of a scene.
 inline constexpr double kMaxViewDistance = 16;
 
+// Thread rule: all functions here are pure.
+
 /// (XS, YS) in baselines: (0, 0) is the left camera, (1, 0) the right one, y > 0 is below.
 struct BaselinePosition {
   double x = 0;

@@ -33,7 +33,7 @@ constexpr int kHeight = 480;
 /// RMS and largest |y_left − y_right| of matches once rectified.
 struct Rows {
   double rms_px = 0;
-  double largest_px = 0;
+  double max_px = 0;
 };
 
 Rows rows_of(const StereoCalibration& calibration, const std::vector<PointMatch>& matches) {
@@ -48,7 +48,7 @@ Rows rows_of(const StereoCalibration& calibration, const std::vector<PointMatch>
     }
     const double error = std::abs(left->y() - right->y());
     rows.rms_px += error * error / static_cast<double>(matches.size());
-    rows.largest_px = std::max(rows.largest_px, error);
+    rows.max_px = std::max(rows.max_px, error);
   }
   rows.rms_px = std::sqrt(rows.rms_px);
   return rows;
@@ -64,8 +64,8 @@ TEST(UncalibratedRig, ExactMatchesGiveExactRows) {
     EXPECT_NEAR(rig.calibration.translation.norm(), 1, 1e-12);
     // Matches that it has not seen: it is the geometry that is right.
     const auto others = exact_matches(truth, kWidth, kHeight, 100, random);
-    EXPECT_LT(rows_of(rig.calibration, matches).largest_px, 1e-6) << "trial " << trial;
-    EXPECT_LT(rows_of(rig.calibration, others).largest_px, 1e-5) << "trial " << trial;
+    EXPECT_LT(rows_of(rig.calibration, matches).max_px, 1e-6) << "trial " << trial;
+    EXPECT_LT(rows_of(rig.calibration, others).max_px, 1e-5) << "trial " << trial;
     const RectifiedPair pair = rectified_pair(rig.calibration, kWidth, kHeight);
     for (const PointMatch& match : matches) {
       const Eigen::Vector3d left = pair.left.homography * match.left.homogeneous();
@@ -249,7 +249,7 @@ TEST(UncalibratedRig, TheLeftCameraStaysLeft) {
   }
   const UncalibratedRig rig = estimate_rig(matches, kWidth, kHeight);
   EXPECT_LT(rig.calibration.rotation.row(0).dot(rig.calibration.translation.transpose()), -0.9);
-  EXPECT_LT(rows_of(rig.calibration, matches).largest_px, 1e-6);
+  EXPECT_LT(rows_of(rig.calibration, matches).max_px, 1e-6);
 }
 
 TEST(UncalibratedRig, RectifiesTheChessboardFromItsCorners) {

@@ -60,9 +60,9 @@ TEST(VerticalError, OfExactMatchesIsThatOfTheirRows) {
   ASSERT_TRUE(none);
   EXPECT_EQ(none->inliers, 200);
   EXPECT_EQ(none->rms_px, 0);
-  EXPECT_EQ(none->largest_px, 0);
+  EXPECT_EQ(none->max_px, 0);
   EXPECT_NEAR(none->min_disparity_px, -5, 2);
-  EXPECT_NEAR(none->largest_disparity_px, 60, 2);
+  EXPECT_NEAR(none->max_disparity_px, 60, 2);
 
   const auto matches = matches_with(
       500, [](double x, double y, double) { return -2 + x / 200 + y * y / 1e5; }, random);
@@ -87,7 +87,7 @@ TEST(VerticalError, OfExactMatchesIsThatOfTheirRows) {
   EXPECT_NEAR(found->rms_px, std::sqrt(sum_of_squares), 1e-9);
   EXPECT_NEAR(found->systematic_px, std::sqrt(sum_of_squares), 1e-5);
   EXPECT_NEAR(found->mean_absolute_px, sum_absolute, 1e-9);
-  EXPECT_EQ(found->largest_px, largest);
+  EXPECT_EQ(found->max_px, largest);
   EXPECT_EQ(found->percentile_95_px, absolute[474]);
 }
 
@@ -112,7 +112,7 @@ TEST(VerticalError, LeavesWrongMatchesOutAndTellsNoiseFromError) {
   EXPECT_NEAR(found->inliers, 360, 6);
   EXPECT_NEAR(found->systematic_px, std::sqrt(clean), 0.04);
   EXPECT_NEAR(found->rms_px, std::hypot(std::sqrt(clean), 0.2), 0.05);
-  EXPECT_LT(found->largest_px, 2);
+  EXPECT_LT(found->max_px, 2);
 }
 
 // Even where the error is 0 on average, as of a camera that is turned about its axis.
@@ -202,8 +202,8 @@ TEST(VerticalError, IsFoundInPictures) {
       EXPECT_NEAR(found->mean_px, -shift, 0.08);
       EXPECT_NEAR(found->systematic_px, std::abs(shift), 0.08);
       EXPECT_NEAR(found->min_disparity_px, 4, 3);
-      EXPECT_GT(found->largest_disparity_px, 10);
-      EXPECT_LT(found->largest_disparity_px, 20.5);
+      EXPECT_GT(found->max_disparity_px, 10);
+      EXPECT_LT(found->max_disparity_px, 20.5);
     }
   }
 }

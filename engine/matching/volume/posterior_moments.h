@@ -8,6 +8,9 @@ namespace vantage {
 /// Mean and variance of p(d) of each pixel, over the candidates that were searched and have a
 /// partner (EQUATIONS §3.19): the sink of an aggregated volume of probabilities, searched along
 /// rows.
+///
+/// Thread rule: write() may be called concurrently, as VolumeSink says; all else one thread at a
+/// time.
 class PosteriorMoments final : public VolumeSink {
  public:
   /// Throws UsageError for a volume without probabilities or of a two-dimensional search.
