@@ -46,7 +46,7 @@ TEST(FrameComfort, CountsMatchedPixelsOnly) {
   EXPECT_EQ(comfort.matched, 7000);
   EXPECT_EQ(comfort.disparity.front(), -2 * kComfortPerPixel);
   EXPECT_EQ(comfort.disparity.back(), 3 * kComfortPerPixel / 2);
-  EXPECT_EQ(comfort.disparity[8], -2 * kComfortPerPixel);  // the lower half
+  EXPECT_EQ(comfort.disparity[7], -2 * kComfortPerPixel);  // the lower half
   EXPECT_EQ(comfort.disparity[9], 3 * kComfortPerPixel / 2);
   for (const int difference : comfort.colour) {
     EXPECT_EQ(difference, 10 * kComfortPerGreyLevel);
