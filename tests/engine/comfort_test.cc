@@ -104,7 +104,10 @@ TEST(ImageOrder, HiddenPixelsBelongToWhatIsFarther) {
 }
 
 FrameComfort frame_at(int disparity_px) {
-  FrameComfort frame{.width_px = 1000, .height_px = 500, .matched = kComfortWhole};
+  FrameComfort frame;
+  frame.width_px = 1000;
+  frame.height_px = 500;
+  frame.matched = kComfortWhole;
   frame.disparity.fill(disparity_px * kComfortPerPixel);
   return frame;
 }
