@@ -370,7 +370,7 @@ TEST_F(InputSceneCommand, RefusesWrongUsage) {
           "6 images, expected 4 for a grid of 2x2");
   refused(build({"--images", folder_ / "nothing"}), 1, "scene build", "nothing");
   refused(build({"--images", images_, "--disparities-y=-1:1"}), 2, "scene build",
-          "--disparities-y");
+          "disparities-y is set");
   write_file(folder_ / "list.csv", "images/0.png,0,0\n");
   refused(build({"--positions", folder_ / "list.csv"}), 1, "scene build",
           "scene has 1 images, expected 2 to 4096");
