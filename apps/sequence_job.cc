@@ -11,12 +11,12 @@
 #include "apps/option_groups.h"
 #include "apps/pair_source_settings.h"
 #include "engine/error.h"
+#include "engine/sequence/memory_plan.h"
 
 namespace vantage::apps {
 namespace {
 
 constexpr std::string_view kAutomatic = "auto";
-constexpr int kMaxInFlight = 64;
 
 std::string known_outputs() {
   std::string names;
@@ -268,9 +268,9 @@ void check_sequence(SequenceJob& job, const Settings& settings, bool is_continue
   if (job.rectification.kept_outline > 0 && job.calibration.empty()) {
     throw UsageError("--kept-outline has no effect without --calibration");
   }
-  if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxInFlight)) {
+  if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxFramesInFlight)) {
     throw UsageError(fmt::format("in-flight is {}, expected a number from 1 to {}", *job.in_flight,
-                                 kMaxInFlight));
+                                 kMaxFramesInFlight));
   }
 }
 

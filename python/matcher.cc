@@ -16,7 +16,7 @@ MatchSetup match_setup(py::dict keywords) {
   MatchSetup setup;
   setup.execution = &take_execution(keywords);
   apps::Settings settings("", "");
-  apps::add_reference_setting(settings, setup.options);
+  apps::add_reference_setting(settings, setup.options.reference);
   apps::add_match_settings(settings, setup.options);
   set_options(settings, keywords);
   return setup;
@@ -69,7 +69,7 @@ std::unique_ptr<MatchResult> Matcher::compute(const ImageArguments& arguments,
 
 py::dict Matcher::options() {
   apps::Settings settings("", "");
-  apps::add_reference_setting(settings, setup_.options);
+  apps::add_reference_setting(settings, setup_.options.reference);
   apps::add_match_settings(settings, setup_.options);
   const apps::SettingValue values = settings.values();
   py::dict result;

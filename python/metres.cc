@@ -102,7 +102,7 @@ constexpr double kFractionalStep_px = 0.1;
 Side take_reference(py::dict& keywords) {
   MatchOptions options;
   apps::Settings settings("", "");
-  apps::add_reference_setting(settings, options);
+  apps::add_reference_setting(settings, options.reference);
   py::dict given;
   if (keywords.contains("reference")) {
     given["reference"] = keywords.attr("pop")("reference");

@@ -261,7 +261,7 @@ class Sequence {
     apps::add_chunk_frames_setting(settings, job);
     apps::add_in_flight_setting(settings, job);
     settings.flag("keep-going", job.keep_going, "");
-    apps::add_reference_setting(settings, job.sequence.match);
+    apps::add_reference_setting(settings, job.sequence.match.reference);
     apps::add_match_settings(settings, job.sequence.match);
     apps::add_synthesis_settings(settings, job.sequence.synthesis);
     set_options(settings, keywords);
