@@ -21,7 +21,7 @@ def test_tutorial(tmp_path, monkeypatch):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), re.S)
     assert len(blocks) >= 8
     assert len(blocks[0].strip().splitlines()) == 5  # pair in, coloured map out
-    run_program("generate", "scene", "-o", tmp_path, "--frames", 3, "--width", 96, "--height", 64,
+    run_program("generate", "scene", "-o", tmp_path, "--frames", 3, "--width", 200, "--height", 150,
                 "--quiet")
     run_program("generate", "scene", "-o", tmp_path, "--width", 200, "--height", 150, "--quiet")
     monkeypatch.chdir(tmp_path)
