@@ -9,6 +9,7 @@
 #include "apps/film_reports.h"
 #include "apps/flicker_values.h"
 #include "apps/outputs.h"
+#include "apps/resumed_run.h"
 #include "apps/run_report.h"
 #include "apps/run_results.h"
 #include "apps/run_session.h"
@@ -42,6 +43,20 @@ void add_merge_settings(Settings& settings, MergeJob& job) {
   settings.flag("quiet", job.quiet, "Print errors only");
   settings.set_short_help({}, {"vantage merge results", "vantage merge results --partial",
                                "vantage merge results --verify --report merge.json"});
+}
+
+[[noreturn]] void fail_incomplete(const std::string& folder, const SequenceLayout& layout,
+                                  FrameRange all, const std::vector<FrameRange>& missing) {
+  int count = 0;
+  for (const FrameRange range : missing) {
+    count += range.count();
+  }
+  const bool resumes_all = resumed_part(layout.journal_folder()).is_all();
+  throw Error(fmt::format(
+      "{}: {} of {} frames are missing ({}), expected all; 'vantage run -o {} --resume{}' computes "
+      "them{}",
+      folder, count, all.count(), to_string(missing), folder, resumes_all ? "" : " --frames all",
+      resumes_all ? "" : ", --partial leaves them out"));
 }
 
 }  // namespace
@@ -84,14 +99,7 @@ int command_merge(const Arguments& arguments) {
                               job.folder, to_string(missing)));
     }
   } else if (!missing.empty()) {
-    int count = 0;
-    for (const FrameRange range : missing) {
-      count += range.count();
-    }
-    throw Error(
-        fmt::format("{}: {} of {} frames are missing ({}), expected all; 'vantage run -o {} "
-                    "--resume' computes them",
-                    job.folder, count, all.count(), to_string(missing), job.folder));
+    fail_incomplete(job.folder, layout, all, missing);
   }
   std::string sound_problem;
   {
@@ -100,10 +108,10 @@ int command_merge(const Arguments& arguments) {
     report.timed_file_access("join", [&] {
       sound_problem = join_segments(run.sequence, layout, identity, frames, true, journal);
     });
-  }
-  const auto comfort = write_film_reports(run.sequence, layout, identity, frames);
-  if (comfort && !job.quiet) {
-    print_comfort("merge", *comfort, layout);
+    const auto comfort = write_film_reports(run.sequence, layout, frames, journal);
+    if (comfort && !job.quiet) {
+      print_comfort("merge", *comfort, layout);
+    }
   }
   const std::vector<int> skipped = delivered.skipped(frames);
   SettingValue results = {{"frames", frames.count() - static_cast<int>(skipped.size())},

@@ -74,7 +74,7 @@ std::string finish_if_whole(const RunJob& job, const RunSession& session,
     return join_segments(job.sequence, layout, session.identity, frames,
                          sequence.frames + sequence.pictures_again > 0, journal);
   });
-  const auto comfort = write_film_reports(job.sequence, layout, session.identity, frames);
+  const auto comfort = write_film_reports(job.sequence, layout, frames, journal);
   if (comfort && !job.common.quiet) {
     print_comfort("run", *comfort, layout);
   }

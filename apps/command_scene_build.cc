@@ -139,11 +139,17 @@ int command_scene_build(const Arguments& arguments) {
   Execution execution(job.common.execution);
   report.set_execution(execution);
 
+  std::vector<std::string> remarks;
   SceneBuilder builder = report.timed_file_access("read", [&] {
-    std::vector<SceneImage> images = scene_images(job.images, settings);
+    std::vector<SceneImage> images = scene_images(job.images, settings, remarks);
     check_files(job, settings, images);
     return SceneBuilder(job.output, std::move(images), options, execution);
   });
+  if (!job.common.quiet) {
+    for (const std::string& remark : remarks) {
+      tell("scene build: note: {}\n", remark);
+    }
+  }
   const std::atomic<bool>& interrupted = interrupt_flag();
   const int edges = static_cast<int>(builder.edges().size());
   const int to_match = static_cast<int>(builder.edges_to_match().size());
@@ -188,6 +194,7 @@ int command_scene_build(const Arguments& arguments) {
   }
   builder.require_all_joined();
   report.set_results({{"images", builder.images()},
+                      {"remarks", remarks},
                       {"triangles", builder.triangles()},
                       {"edges", edges},
                       {"edges_refused", refused},

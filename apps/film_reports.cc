@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
+#include <vector>
 
 #include "apps/comfort_page.h"
 #include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
+#include "engine/io/file_lock.h"
+#include "engine/io/temporary_name.h"
 #include "engine/sequence/depth_picture.h"
+#include "engine/sequence/journal_content.h"
 #include "engine/sequence/shots.h"
 
 namespace vantage::apps {
@@ -55,33 +60,43 @@ SettingValue depth_values(const SequenceOptions& options, const ShotTable& table
       {"shots", shots}};
 }
 
-}  // namespace
+/// The files that are written, and those of killed processes removed.
+class ReportFiles {
+ public:
+  explicit ReportFiles(const SequenceLayout& layout) : layout_(layout) {
+    for (const std::string& name : layout.report_names()) {
+      remove_temporary_files_of(layout.folder() / name);
+    }
+  }
 
-std::optional<ComfortReport> write_film_reports(const SequenceOptions& options,
-                                                const SequenceLayout& layout,
-                                                const RunIdentity& identity, FrameRange frames) {
-  const bool has_depth = options.saves(SequenceOutput::kDepthVideo);
-  const bool has_comfort = options.saves(SequenceOutput::kComfort);
-  if (frames.empty() || (!has_depth && !has_comfort)) {
-    return std::nullopt;
+  void write(const std::filesystem::path& path, const std::string& text) {
+    write_text_file(path, text);
+    written_.push_back(record_of_file(layout_.folder(), path.filename().string()));
   }
-  const std::filesystem::path file = layout.journal_folder() / kShotsFile;
-  std::optional<ShotTable> table = read_shot_table(file);
-  if (!table && identity.is_stream()) {
-    table = shots_at({}, frames, options);  // the run was killed before it knew the cuts
+
+  /// Unless the journal knows them.
+  void record(FrameRange frames, RunJournal& journal) const {
+    const JournalContent known = read_journal(layout_);
+    const bool is_known = std::ranges::all_of(written_, [&](const FileRecord& file) {
+      const auto contents = known.contents.find(file.name);
+      return contents != known.contents.end() &&
+             std::ranges::find(contents->second, file.content) != contents->second.end();
+    });
+    if (!is_known) {
+      const JournalRecord record = ReportRecord{frames, written_};
+      journal.append({&record, 1});
+    }
   }
-  if (!table) {
-    throw Error(
-        fmt::format("{}: is missing, expected the shots of the run; --overwrite starts the "
-                    "run again",
-                    file.string()));
-  }
-  if (has_depth) {
-    write_text_file(layout.depth_description(), document_of(depth_values(options, *table, frames)));
-  }
-  if (!has_comfort) {
-    return std::nullopt;
-  }
+
+ private:
+  const SequenceLayout& layout_;
+  std::vector<FileRecord> written_;
+};
+
+std::optional<ComfortReport> write_comfort(const SequenceOptions& options,
+                                           const SequenceLayout& layout,
+                                           const RunIdentity& identity, const ShotTable& table,
+                                           FrameRange frames, ReportFiles& reports) {
   std::map<int, FrameComfort> measured;
   const DeliveredFrames delivered(layout);
   for (const auto& [frame, record] : delivered.records()) {
@@ -93,15 +108,52 @@ std::optional<ComfortReport> write_film_reports(const SequenceOptions& options,
     return std::nullopt;
   }
   std::vector<ComfortSpan> spans;
-  for (const Shot& shot : shots_in(*table, frames)) {
+  for (const Shot& shot : shots_in(table, frames)) {
     spans.push_back({shot.first_frame, shot.end_frame});
   }
   ComfortReport report = summarise_comfort(measured, spans);
   const std::string input = identity.inputs.empty() ? std::string() : identity.inputs.front();
   const ComfortPage page{report, measured, options.frame_rate, input.substr(0, input.rfind(": "))};
-  write_text_file(layout.comfort_report("json"), document_of(comfort_values(page)));
-  write_text_file(layout.comfort_report("html"), make_comfort_page(page));
+  reports.write(layout.comfort_report("json"), document_of(comfort_values(page)));
+  reports.write(layout.comfort_report("html"), make_comfort_page(page));
   return report;
+}
+
+}  // namespace
+
+std::optional<ComfortReport> write_film_reports(const SequenceOptions& options,
+                                                const SequenceLayout& layout, FrameRange frames,
+                                                RunJournal& journal) {
+  const bool has_depth = options.saves(SequenceOutput::kDepthVideo);
+  const bool has_comfort = options.saves(SequenceOutput::kComfort);
+  if (frames.empty() || (!has_depth && !has_comfort)) {
+    return std::nullopt;
+  }
+  // As the run was started: a resumed one may know its input by another path.
+  const RunIdentity identity = RunJournal::read_identity(layout.journal_folder());
+  const std::filesystem::path file = layout.journal_folder() / kShotsFile;
+  std::optional<ShotTable> table = read_shot_table(file);
+  if (!table && identity.is_stream()) {
+    table = shots_at({}, frames, options);  // the run was killed before it knew the cuts
+  }
+  if (!table) {
+    throw Error(
+        fmt::format("{}: is missing, expected the shots of the run; --overwrite starts the "
+                    "run again",
+                    file.string()));
+  }
+  // Several processes may find at the same time that all frames exist.
+  const FileLock lock(layout.journal_folder() / "run.json", FileLock::Wait::kYes);
+  ReportFiles reports(layout);
+  if (has_depth) {
+    reports.write(layout.depth_description(), document_of(depth_values(options, *table, frames)));
+  }
+  std::optional<ComfortReport> comfort;
+  if (has_comfort) {
+    comfort = write_comfort(options, layout, identity, *table, frames, reports);
+  }
+  reports.record(frames, journal);
+  return comfort;
 }
 
 void print_comfort(const std::string& command, const ComfortReport& report,

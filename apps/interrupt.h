@@ -4,9 +4,13 @@
 
 namespace vantage::apps {
 
+/// From now on SIGINT, SIGTERM and SIGHUP end the process as usual, but without leaving temporary
+/// files. A signal that is ignored stays so.
+void remove_files_on_signals();
+
 /// After the first call, the first SIGINT, SIGTERM or SIGHUP sets the returned flag instead of
-/// ending the process; the second one ends it as usual. For commands that finish the work in flight
-/// first. SIGHUP stays ignored if it was (nohup).
+/// ending the process; the second one of its kind ends it as above. For commands that finish the
+/// work in flight first. SIGHUP stays ignored if it was (nohup).
 const std::atomic<bool>& interrupt_flag();
 
 }  // namespace vantage::apps

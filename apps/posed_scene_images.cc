@@ -108,7 +108,8 @@ std::vector<SceneImage> in_order(const std::vector<fs::path>& files, const Sized
 
 std::vector<SceneImage> images_of_trajectory(const Trajectory& trajectory, const fs::path& file,
                                              const std::vector<fs::path>& files,
-                                             const SizedCamera& camera) {
+                                             const SizedCamera& camera,
+                                             std::vector<std::string>& remarks) {
   const std::vector<double> times = times_of(files);
   if (trajectory.times_s.empty() || times.empty()) {
     return in_order(files, camera, trajectory.poses, file);
@@ -130,13 +131,19 @@ std::vector<SceneImage> images_of_trajectory(const Trajectory& trajectory, const
                     "their times, or as many as there are poses",
                     file.string(), kMaxTimeDifference_s));
   }
+  if (result.size() < files.size()) {
+    remarks.push_back(fmt::format(
+        "{} of {} images are left out: {} has no pose within {} s of them",
+        files.size() - result.size(), files.size(), file.string(), kMaxTimeDifference_s));
+  }
   return result;
 }
 
 }  // namespace
 
 std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::string& images,
-                                           const fs::path& intrinsics) {
+                                           const fs::path& intrinsics,
+                                           std::vector<std::string>& remarks) {
   if (images.empty()) {
     throw UsageError("--poses is given without --images, expected both");
   }
@@ -158,7 +165,8 @@ std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::str
   if (is_opencv) {
     return in_order(files, camera, parse_opencv_poses(text, poses.string()), poses);
   }
-  return images_of_trajectory(parse_trajectory(text, poses.string()), poses, files, camera);
+  return images_of_trajectory(parse_trajectory(text, poses.string()), poses, files, camera,
+                              remarks);
 }
 
 }  // namespace vantage::apps

@@ -6,6 +6,8 @@
 #include <csignal>
 #include <initializer_list>
 
+#include "apps/interrupt.h"
+
 namespace vantage::apps {
 
 void set_up_process() {
@@ -18,6 +20,7 @@ void set_up_process() {
   }
   (void)std::signal(SIGPIPE, SIG_IGN);
   (void)std::signal(SIGXFSZ, SIG_IGN);
+  remove_files_on_signals();
 }
 
 }  // namespace vantage::apps

@@ -5,6 +5,8 @@
 #include <array>
 #include <filesystem>
 #include <regex>
+#include <string>
+#include <vector>
 
 #include "apps/match_settings.h"
 #include "engine/error.h"
@@ -27,19 +29,22 @@ bool names_input(const PairSourceOptions& input) {
            input.pairs.empty() && input.sequence.empty());
 }
 
-/// Sets the part of the run from a name of RunSession::part_name(); ignores other names.
-void take_part(const std::string& name, RunJob& job) {
+constexpr const char* kMergePart = "merge";  // of 'vantage merge', which computes no frames
+
+/// The part of a name of RunSession::part_name(); other names are of the whole run.
+RunPart part_of(const std::string& name) {
   static const std::regex form("(?:frames-([0-9]+)-([0-9]+))?-?(?:([0-9]+)-of-([0-9]+))?");
+  RunPart part;
   std::smatch numbers;
-  if (!std::regex_match(name, numbers, form)) {
-    return;
+  if (std::regex_match(name, numbers, form)) {
+    if (numbers[1].matched) {
+      part.frames = FrameRange{std::stoi(numbers[1]), std::stoi(numbers[2]) + 1};
+    }
+    if (numbers[3].matched) {
+      part.shard = Shard{std::stoi(numbers[3]), std::stoi(numbers[4])};
+    }
   }
-  if (numbers[1].matched) {
-    job.frames = FrameRange{std::stoi(numbers[1]), std::stoi(numbers[2]) + 1};
-  }
-  if (numbers[3].matched) {
-    job.shard = Shard{std::stoi(numbers[3]), std::stoi(numbers[4])};
-  }
+  return part;
 }
 
 }  // namespace
@@ -65,13 +70,30 @@ std::string sources_of(const RunJob& job, const Settings& settings) {
   return sources.dump();
 }
 
+RunPart resumed_part(const fs::path& journal_folder) {
+  std::vector<std::string> names = RunJournal::parts(journal_folder);
+  std::erase(names, kMergePart);
+  if (names.empty()) {
+    return {};
+  }
+  RunPart common = part_of(names.front());
+  if (names.size() > 1) {
+    common.shard.reset();
+  }
+  for (const std::string& name : names) {
+    if (part_of(name).frames != common.frames) {
+      return {};
+    }
+  }
+  return common;
+}
+
 void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job) {
   if (!job.resume || names_input(job.input)) {
     return;
   }
   const fs::path journal = SequenceLayout(job.output, job.sequence).journal_folder();
   const RunIdentity identity = RunJournal::read_identity(journal);
-  const std::vector<std::string> parts = RunJournal::parts(journal);
   job = RunJob();
   try {
     settings.set_values(SettingValue::parse(identity.settings));
@@ -81,8 +103,10 @@ void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job) {
                             (journal / "run.json").string(), error.what()));
   }
   (void)settings.read(arguments);
-  if (parts.size() == 1 && !job.frames && !job.shard) {
-    take_part(parts.front(), job);
+  if (!settings.is_set("frames") && !settings.is_set("shard")) {
+    const RunPart part = resumed_part(journal);
+    job.frames = part.frames;
+    job.shard = part.shard;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -14,9 +15,21 @@ namespace vantage::apps {
 /// with by its folder alone: a JSON object of where the input is, and --keep-going.
 std::string sources_of(const RunJob& job, const Settings& settings);
 
+/// The part of a run that --resume continues; without fields: all of it.
+struct RunPart {
+  std::optional<FrameRange> frames;
+  std::optional<Shard> shard;
+
+  [[nodiscard]] bool is_all() const { return !frames && !shard; }
+};
+
+/// The frames that all started parts have in common (--frames), and the shard if there is only one.
+/// Throws Error when the folder cannot be read.
+RunPart resumed_part(const std::filesystem::path& journal_folder);
+
 /// Where --resume comes without an input, fills in `job`, to which `settings` are bound, from the
-/// run in its folder; what `arguments` say goes before that. If one part alone (--frames, --shard)
-/// was begun, that is the part. Throws Error when there is no run.
+/// run in its folder; what `arguments` say goes before that. Without --frames and --shard, its part
+/// is resumed_part(). Throws Error when there is no run.
 void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job);
 
 /// The search range of the run that `job` resumes, as estimated at its start from the same input.

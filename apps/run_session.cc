@@ -209,6 +209,9 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
   for (const std::string& remark : session.pairs->remarks()) {
     line("note: " + remark);
   }
+  if (!session.poses_note.empty()) {
+    line("note: " + session.poses_note);
+  }
   line(fmt::format("{}, disparities {}:{}, {}", job.sequence.match.chosen(),
                    job.sequence.match.disparities.min, job.sequence.match.disparities.max,
                    strips_text(session.memory.chain)));

@@ -97,10 +97,11 @@ void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
                       "calib.txt, or a text fx fy cx cy [k1 k2 p1 p2 [k3]]");
 }
 
-std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings) {
+std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings,
+                                     std::vector<std::string>& remarks) {
   if (!input.poses.empty()) {
     settings.refuse_idle({"grid", "spacing", "positions"}, "with --poses");
-    return posed_scene_images(input.poses, input.images, input.intrinsics);
+    return posed_scene_images(input.poses, input.images, input.intrinsics, remarks);
   }
   settings.refuse_idle({"intrinsics", "neighbours"}, "without --poses");
   if (input.images.empty() == input.positions.empty()) {

@@ -31,8 +31,9 @@ struct SceneImagesInput {
 void add_scene_images_settings(Settings& settings, SceneImagesInput& input);
 
 /// Throws UsageError when options do not go together, Error when there are no such files, or not
-/// as many as the grid has places.
-std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings);
+/// as many as the grid has places. Adds to `remarks` which images are left out.
+std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings,
+                                     std::vector<std::string>& remarks);
 
 /// "X,Y" as a position in the scene's unit. Throws UsageError.
 ScenePosition to_scene_position(const SettingValue& value);

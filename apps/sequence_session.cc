@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 #include <variant>
 
@@ -21,6 +22,27 @@ PairShape shape_of(const Photograph& photograph) {
           .bytes_per_value =
               std::visit([](const auto& image) { return static_cast<int>(sizeof(*image.row(0))); },
                          photograph.pixels)};
+}
+
+/// Poses of times are checked frame by frame.
+void check_number_of_poses(const SequenceJob& job, const FramePair& pair,
+                           SequenceSession& session) {
+  const std::optional<int> poses = session.poses->numbered(pair);
+  if (!poses || session.pairs->is_stream()) {
+    return;
+  }
+  const int last = session.pairs->index_of(session.selection.all().end - 1);
+  if (*poses <= last && !job.keep_going) {
+    throw Error(fmt::format("{}: has {} poses, expected one for each pair from 0 to {}", job.poses,
+                            *poses, last));
+  }
+  // A camera that moves has a pose per image.
+  const int pairs =
+      session.pairs->pair_count() + (job.input.sequence.empty() ? 0 : std::abs(job.input.step));
+  if (job.input.every.takes_all() && *poses > pairs) {
+    session.poses_note = fmt::format("{} has {} poses for {} pairs, the last {} are not used",
+                                     job.poses, *poses, pairs, *poses - pairs);
+  }
 }
 
 }  // namespace
@@ -118,6 +140,7 @@ void prepare_pairs(const SequenceJob& job, const std::optional<StereoCalibration
   }
   if (!job.poses.empty()) {
     session.poses.emplace(read_trajectory(job.poses), job.poses);
+    check_number_of_poses(job, first, session);
   }
   if (!calibration && is_metric) {
     session.map_camera = job.rig.camera(first.left.width(), first.left.height(),

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "apps/sequence_job.h"
 #include "engine/execution.h"
@@ -20,7 +21,8 @@ struct SequenceSession {
   std::optional<Rectifier> rectifier;   ///< if a calibration must be applied
   std::optional<MapCamera> map_camera;  ///< of outputs in metres
   std::optional<FramePoses> poses;
-  PairShape shape;  ///< of the first pair that could be read
+  std::string poses_note;  ///< about their number; may be empty
+  PairShape shape;         ///< of the first pair that could be read
   FrameSelection selection;
 
   /// Rectifies a pair in place if a calibration must be applied.

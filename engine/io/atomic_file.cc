@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/io/file_descriptor.h"
 #include "engine/io/temporary_name.h"
+#include "engine/io/unfinished_files.h"
 
 namespace vantage {
 namespace {
@@ -58,13 +59,16 @@ AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(th
   }
   for (int attempt = 0;; ++attempt) {
     temporary_path_ = folder / temporary_name(final_path_, attempt);
+    note_unfinished(temporary_path_);
     const FileDescriptor file(
         ::open(temporary_path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
     if (file.valid()) {
       return;
     }
-    if (errno != EEXIST) {
-      fail(given_path_, errno);
+    const int error = errno;
+    forget_unfinished(temporary_path_);
+    if (error != EEXIST) {
+      fail(given_path_, error);
     }
   }
 }
@@ -73,6 +77,7 @@ AtomicFile::~AtomicFile() {
   if (!committed_) {
     std::error_code ignored;
     fs::remove(temporary_path_, ignored);
+    forget_unfinished(temporary_path_);
   }
 }
 
@@ -95,6 +100,7 @@ void AtomicFile::commit() {
     fail(given_path_, errno);
   }
   committed_ = true;
+  forget_unfinished(temporary_path_);
   flush_name();
 }
 

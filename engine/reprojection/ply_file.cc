@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstring>
 #include <iterator>
+#include <optional>
+#include <span>
 #include <string>
 
 namespace vantage {
@@ -18,7 +20,8 @@ void append(const T* values, std::size_t count, std::uint8_t*& end) {
   end += count * sizeof(T);
 }
 
-std::string header(const PointCloud& cloud, std::size_t triangles, std::string_view frame) {
+std::string header(const PointCloud& cloud, std::optional<std::size_t> triangles,
+                   std::string_view frame) {
   std::string text = fmt::format(
       "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {}\n"
       "property float x\nproperty float y\nproperty float z\n{}"
@@ -28,21 +31,22 @@ std::string header(const PointCloud& cloud, std::size_t triangles, std::string_v
   if (!cloud.confidence.empty()) {
     text += "property float confidence\n";
   }
-  if (triangles > 0) {
-    text += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", triangles);
+  if (triangles) {
+    text += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", *triangles);
   }
   return text + "end_header\n";
 }
 
-std::vector<std::uint8_t> encode(const PointCloud& cloud,
-                                 const std::vector<std::int32_t>& triangles,
-                                 std::string_view frame) {
+std::vector<std::uint8_t> encode(const PointCloud& cloud, std::span<const std::int32_t> corners,
+                                 bool has_faces, std::string_view frame) {
   constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t);
-  const std::string text = header(cloud, triangles.size() / 3, frame);
+  const std::size_t triangles = corners.size() / 3;
+  const std::string text =
+      header(cloud, has_faces ? std::optional(triangles) : std::nullopt, frame);
   const std::size_t vertex_bytes = (cloud.normals.empty() ? 3 : 6) * sizeof(float) + 3 +
                                    (cloud.confidence.empty() ? 0 : sizeof(float));
   std::vector<std::uint8_t> bytes(text.size() + cloud.size() * vertex_bytes +
-                                  triangles.size() / 3 * kFaceBytes);
+                                  triangles * kFaceBytes);
   std::uint8_t* end = bytes.data();
   append(text.data(), text.size(), end);
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -55,9 +59,9 @@ std::vector<std::uint8_t> encode(const PointCloud& cloud,
       append(&cloud.confidence[i], 1, end);
     }
   }
-  for (std::size_t i = 0; i < triangles.size(); i += 3) {
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
     *end++ = 3;
-    append(&triangles[i], 3, end);
+    append(&corners[i], 3, end);
   }
   return bytes;
 }
@@ -65,11 +69,11 @@ std::vector<std::uint8_t> encode(const PointCloud& cloud,
 }  // namespace
 
 std::vector<std::uint8_t> encode_ply(const PointCloud& cloud, std::string_view frame) {
-  return encode(cloud, {}, frame);
+  return encode(cloud, {}, false, frame);
 }
 
 std::vector<std::uint8_t> encode_ply(const TriangleMesh& mesh, std::string_view frame) {
-  return encode(mesh.vertices, mesh.triangles, frame);
+  return encode(mesh.vertices, mesh.triangles, true, frame);
 }
 
 }  // namespace vantage

@@ -157,7 +157,7 @@ PointCloud point_cloud(const CloudSource& source, const CloudOptions& options,
       }
     }
   }
-  if (cloud.size() == 0) {
+  if (cloud.size() == 0 && !options.may_be_empty) {
     fail_empty("cloud");
   }
   return cloud;
@@ -214,7 +214,7 @@ TriangleMesh triangle_mesh(const CloudSource& source, const CloudOptions& option
       add_triangle((missing + 1) % 4, (missing + 2) % 4, (missing + 3) % 4);
     }
   }
-  if (mesh.triangles.empty()) {
+  if (mesh.triangles.empty() && !options.may_be_empty) {
     fail_empty("mesh");
   }
   return mesh;

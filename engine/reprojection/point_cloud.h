@@ -29,6 +29,7 @@ struct CloudOptions {
   /// Neighbours that differ by more than this are not of one surface; above 0.
   double gradient_limit_px = 1;
   bool with_confidence = false;  ///< points have their confidence
+  bool may_be_empty = false;     ///< no point, or no triangle, is no error
 
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;
@@ -65,8 +66,9 @@ struct TriangleMesh {
 void outline_mask(ImageView<const float> disparity_px, double gradient_limit_px,
                   Execution& execution, Mask& outlines);
 
-/// The points of a map, row by row from its top left. Throws Error if sizes differ or no pixel is
-/// left; UsageError for invalid options. Identical for any `execution`.
+/// The points of a map, row by row from its top left. Throws Error if sizes differ, or if no
+/// pixel is left and that is an error; UsageError for invalid options. Identical for any
+/// `execution`.
 PointCloud point_cloud(const CloudSource& source, const CloudOptions& options,
                        Execution& execution);
 

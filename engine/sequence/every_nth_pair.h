@@ -20,6 +20,9 @@ class EveryNthPair final : public PairSource {
   void skip_to(int index) override { next_index_ = index; }
   [[nodiscard]] int pair_count() const override { return pair_count_; }
   [[nodiscard]] FrameRange pairs_of(FrameRange input_frames) const override;
+  [[nodiscard]] int index_of(int pair) const override {
+    return source_->index_of(source_index(pair));
+  }
   [[nodiscard]] int frames_kept() const override { return source_->frames_kept(); }
   [[nodiscard]] std::string describe(int index) const override {
     return source_->describe(source_index(index));

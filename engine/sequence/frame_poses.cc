@@ -32,6 +32,12 @@ std::optional<double> time_of(const std::filesystem::path& file) {
 FramePoses::FramePoses(Trajectory trajectory, std::string file)
     : trajectory_(std::move(trajectory)), file_(std::move(file)) {}
 
+std::optional<int> FramePoses::numbered(const FramePair& pair) const {
+  return trajectory_.times_s.empty() || !time_of(pair.fetched[0].file)
+             ? std::optional(static_cast<int>(trajectory_.poses.size()))
+             : std::nullopt;
+}
+
 const CameraPose& FramePoses::of(const FramePair& pair) const {
   const std::vector<double>& times_s = trajectory_.times_s;
   const std::optional<double> time_s = time_of(pair.fetched[0].file);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "engine/sequence/pair_source.h"
@@ -18,6 +19,10 @@ class FramePoses {
 
   /// Throws Error if there is none for a pair; of times, if none is within 20 ms.
   [[nodiscard]] const CameraPose& of(const FramePair& pair) const;
+
+  /// The number of poses, if they belong to pairs by number; empty: by time. `pair`: any pair of
+  /// the run.
+  [[nodiscard]] std::optional<int> numbered(const FramePair& pair) const;
 
  private:
   Trajectory trajectory_;

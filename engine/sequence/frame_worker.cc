@@ -500,9 +500,23 @@ void FrameWorker::encode_metric(FrameSlot& slot, const OutputStream& stream,
       .confidence = map.confidence.view(),
       .camera = point_camera(slot)};
   const std::string_view frame = poses_ != nullptr ? kWorldFrame : kCameraFrame;
-  slot.encoded = stream.output == SequenceOutput::kCloud
-                     ? encode_ply(point_cloud(source, options_.cloud, execution_), frame)
-                     : encode_ply(triangle_mesh(source, options_.cloud, execution_), frame);
+  // A film may fade to black.
+  CloudOptions options = options_.cloud;
+  options.may_be_empty = true;
+  bool is_empty = false;
+  if (stream.output == SequenceOutput::kCloud) {
+    const PointCloud cloud = point_cloud(source, options, execution_);
+    is_empty = cloud.size() == 0;
+    slot.encoded = encode_ply(cloud, frame);
+  } else {
+    const TriangleMesh mesh = triangle_mesh(source, options, execution_);
+    is_empty = mesh.triangles.empty();
+    slot.encoded = encode_ply(mesh, frame);
+  }
+  if (is_empty) {
+    slot.pair.remarks.push_back(
+        fmt::format("its {} is empty: no pixel has a disparity that was measured", stream.name));
+  }
 }
 
 /// Writes to the slot's `encoded`.

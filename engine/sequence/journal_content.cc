@@ -48,6 +48,13 @@ bool is_likely(const JoinRecord& record, const SequenceLayout& layout) {
   return has_names(record.files, layout.video_names());
 }
 
+bool is_likely(const ReportRecord& record, const SequenceLayout& layout) {
+  const std::vector<std::string> known = layout.report_names();
+  return std::ranges::all_of(record.files, [&](const FileRecord& file) {
+    return std::ranges::find(known, file.name) != known.end();
+  });
+}
+
 void add(JournalContent& content, FrameRecord record) {
   // A skipped frame that has been repaired is done, whichever part says so later.
   const auto known = content.frames.find(record.frame);
@@ -61,6 +68,10 @@ void add(JournalContent& content, SegmentRecord record) {
 }
 
 void add(JournalContent& content, JoinRecord record) { content.joins.push_back(std::move(record)); }
+
+void add(JournalContent& content, ReportRecord record) {
+  content.reports.push_back(std::move(record));
+}
 
 }  // namespace
 

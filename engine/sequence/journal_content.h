@@ -16,6 +16,7 @@ struct JournalContent {
                                       ///< skipped
   std::vector<SegmentRecord> segments;
   std::vector<JoinRecord> joins;
+  std::vector<ReportRecord> reports;
   /// All recorded contents of each file, by name: a repeated frame is recorded again.
   std::map<std::string, std::vector<FileContent>> contents;
   int damaged_lines = 0;     ///< with a wrong checksum

@@ -162,6 +162,9 @@ struct ToJson {
     json["files"] = files_json(record.files);
     return json;
   }
+  Json operator()(const ReportRecord& record) const {
+    return {{"reported", range_json(record.frames)}, {"files", files_json(record.files)}};
+  }
 };
 
 /// Throws nlohmann's exceptions for other JSON.
@@ -172,6 +175,9 @@ JournalRecord record_in(const Json& json) {
   if (json.contains("joined")) {
     return JoinRecord{range_of(json.at("joined")), json.value("skipped", std::vector<int>()),
                       files_in(json)};
+  }
+  if (json.contains("reported")) {
+    return ReportRecord{range_of(json.at("reported")), files_in(json)};
   }
   FrameRecord record;
   record.frame = count_of(json.at("frame"));

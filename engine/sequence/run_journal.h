@@ -72,7 +72,13 @@ struct JoinRecord {
   std::vector<FileRecord> files = {};
 };
 
-using JournalRecord = std::variant<FrameRecord, SegmentRecord, JoinRecord>;
+/// Reports on these frames were written: comfort.json, comfort.html, depth-video.json.
+struct ReportRecord {
+  FrameRange frames;
+  std::vector<FileRecord> files = {};
+};
+
+using JournalRecord = std::variant<FrameRecord, SegmentRecord, JoinRecord, ReportRecord>;
 
 /// The record of `name`, which was just written below `folder`. Throws Error when it cannot be
 /// read.

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files that should exist: files of frames, joined videos, and existing segments.
+/// Files that should exist: files of frames, joined videos, reports, and existing segments.
 std::set<std::string> expected_files(const JournalContent& journal, const fs::path& folder) {
   std::set<std::string> names;
   const auto add = [&](const std::vector<FileRecord>& files) {
@@ -29,6 +29,9 @@ std::set<std::string> expected_files(const JournalContent& journal, const fs::pa
   }
   for (const JoinRecord& join : journal.joins) {
     add(join.files);
+  }
+  for (const ReportRecord& report : journal.reports) {
+    add(report.files);
   }
   for (const SegmentRecord& segment : journal.segments) {
     std::error_code ignored;

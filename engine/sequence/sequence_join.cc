@@ -52,7 +52,6 @@ std::string join_videos_of(const SequenceOptions& options, const SequenceLayout&
     for (const FrameRange segment : segments) {
       paths.push_back(layout.segment(stream, segment));
     }
-    remove_temporary_files_of(layout.video(stream));
     const std::string problem = join_videos(paths, options.frame_rate, sound, layout.video(stream));
     sound_problem = sound_problem.empty() ? problem : sound_problem;
   }
@@ -78,6 +77,11 @@ std::string join_segments(const SequenceOptions& options, const SequenceLayout& 
   }
   // Several processes may find at the same time that all frames exist.
   const FileLock lock(layout.journal_folder() / "run.json", FileLock::Wait::kYes);
+  for (const OutputStream& stream : layout.streams()) {
+    if (stream.as_video) {
+      remove_temporary_files_of(layout.video(stream));
+    }
+  }
   const DeliveredFrames delivered(layout);
   const std::vector<FrameRange> segments = segments_of(delivered, frames);
   const int segments_end = segments.empty() ? frames.first : segments.back().end;

@@ -52,6 +52,11 @@ class SequenceLayout {
   [[nodiscard]] std::filesystem::path comfort_report(const std::string& extension) const {
     return folder_ / ("comfort." + extension);
   }
+  /// Names of the reports that a run may write, relative to the folder.
+  [[nodiscard]] std::vector<std::string> report_names() const {
+    return {depth_description().filename().string(), comfort_report("json").filename().string(),
+            comfort_report("html").filename().string()};
+  }
   /// Names of all videos, or of all of their segments, relative to the folder.
   [[nodiscard]] std::vector<std::string> video_names() const;
   [[nodiscard]] std::vector<std::string> segment_names(FrameRange frames) const;

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kTumNumbers = 8;
 constexpr std::size_t kKittiNumbers = 12;
 constexpr std::size_t kWholeMatrixNumbers = 16;
+constexpr double kFarthest = 1e9;  // points of world coordinates are floats
 
 CameraPose pose_of_tum(const std::vector<double>& numbers, const TextLines& lines) {
   const auto rotation = rotation_of_quaternion({numbers[7], numbers[4], numbers[5], numbers[6]});
@@ -67,6 +68,11 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file) {
     trajectory.format = is_tum ? "TUM" : "KITTI";
     trajectory.poses.push_back(is_tum ? pose_of_tum(numbers, lines)
                                       : pose_of_kitti(numbers, lines));
+    if (const double farthest = trajectory.poses.back().centre().cwiseAbs().maxCoeff();
+        !(farthest <= kFarthest)) {
+      lines.fail(fmt::format("the position has a coordinate of {:.3g}, expected numbers within ±{}",
+                             farthest, kFarthest));
+    }
     if (is_tum) {
       trajectory.times_s.push_back(numbers[0]);
     }

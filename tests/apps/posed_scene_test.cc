@@ -253,6 +253,7 @@ TEST_F(PosedScene, TumPosesBelongToImagesNamedAfterTheirTimes) {
       build({"--poses", folder_ / "tum.txt", "--intrinsics", folder_ / "camera.txt"});
   ASSERT_EQ(built.exit_code, 0) << built.err;
   EXPECT_THAT(built.err, HasSubstr("3 images, 3 edges"));
+  EXPECT_THAT(built.err, HasSubstr("note: 1 of 4 images are left out: "));
   EXPECT_THAT(read_file(place_ + "/scene.json"),
               testing::Not(HasSubstr("corrected_degrees")));  // the poses fit
 

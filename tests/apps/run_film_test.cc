@@ -10,6 +10,7 @@
 #include "engine/image/stereo_packing.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
+#include "engine/io/temporary_name.h"
 #include "engine/io/video_io.h"
 #include "tests/apps/run_fixture.h"
 
@@ -314,9 +315,35 @@ TEST_F(RunFilms, PartsAndInterruptionsGiveTheSameBytes) {
   fs::remove(resumed + "/comfort.html");
   ASSERT_EQ(run(resumed, joined(outputs, {"--resume"})).exit_code, 0);
   EXPECT_TRUE(same_files(results_in(resumed), expected));
+  // What a killed process leaves goes when the run is resumed, whatever is left to do.
+  for (const char* name : {"comfort.json", "comfort.html", "depth-video.json", "depth-video.mkv"}) {
+    write_file(resumed + "/" + temporary_name(name, 7), "");
+  }
+  ASSERT_EQ(run_vantage({"run", "-o", resumed, "--resume"}).exit_code, 0);
+  EXPECT_TRUE(same_files(results_in(resumed), expected));
   // The report alone.
   ASSERT_EQ(run(folder_ / "alone", {"--save", "comfort"}).exit_code, 0);
   EXPECT_EQ(read_file(folder_ / "alone/comfort.json"), expected.at("comfort.json"));
+}
+
+TEST_F(RunFilms, ReportsAreVerifiedAndNameTheInputAsAtTheStart) {
+  const std::string out = folder_ / "out";
+  ASSERT_EQ(run_vantage({"run", "--left", fs::relative(left_), "--right", right_, "--frames", "0-2",
+                         "--disparities=0:9", "--method", "ssd", "--save", "depth-video,comfort",
+                         "-o", out})
+                .exit_code,
+            0);
+  const FolderContent expected = results_in(out);
+  EXPECT_EQ(run_vantage({"verify", out}).exit_code, 0);
+  write_file(out + "/comfort.json", expected.at("comfort.json") + " ");
+  fs::remove(out + "/depth-video.json");
+  const ProcessResult damaged = run_vantage({"verify", out});
+  EXPECT_EQ(damaged.exit_code, 1);
+  EXPECT_THAT(damaged.out, HasSubstr("comfort.json has "));
+  EXPECT_THAT(damaged.out, HasSubstr("depth-video.json is missing"));
+  ASSERT_EQ(run_vantage({"run", "-o", out, "--resume"}).exit_code, 0);
+  EXPECT_TRUE(same_files(results_in(out), expected));
+  EXPECT_EQ(run_vantage({"verify", out}).exit_code, 0);
 }
 
 TEST_F(RunFilms, WrongOptions) {

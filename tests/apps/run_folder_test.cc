@@ -94,6 +94,7 @@ TEST_F(RunFolder, PartsThatAreMissingAreNamed) {
   EXPECT_EQ(merged.exit_code, 1);
   EXPECT_TRUE(is_one_line(merged, "merge"));
   EXPECT_THAT(merged.err, HasSubstr("15 of 20 frames are missing (0-4, 10-19)"));
+  EXPECT_THAT(merged.err, HasSubstr("--resume --frames all' computes them, --partial leaves them"));
   ASSERT_EQ(run(out_, {"--chunk-frames", "5", "--shard", "1/4"}).exit_code, 0);
   ASSERT_EQ(run(out_, {"--chunk-frames", "5", "--resume"}).exit_code, 0);
   EXPECT_EQ(merge().exit_code, 0);
@@ -101,6 +102,23 @@ TEST_F(RunFolder, PartsThatAreMissingAreNamed) {
   merged = merge();
   EXPECT_EQ(merged.exit_code, 1);
   EXPECT_THAT(merged.err, HasSubstr("1 of 20 frames are missing (12)"));
+}
+
+TEST_F(RunFolder, TheAdviceOfMergeComputesWhatIsMissing) {
+  ASSERT_EQ(run(out_, {"--frames", "2-5", "--chunk-frames", "2", "--shard", "1/2"}).exit_code, 0);
+  EXPECT_EQ(run_vantage({"merge", out_, "--partial"}).exit_code, 0);
+  // That part alone, as it was asked for.
+  ASSERT_EQ(run_vantage({"run", "-o", out_, "--resume"}).exit_code, 0);
+  EXPECT_EQ(journalled_frames(out_), (std::vector<int>{2, 3}));
+  // The frames that all parts have in common.
+  ASSERT_EQ(run(out_, {"--frames", "2-5", "--chunk-frames", "2", "--shard", "2/2"}).exit_code, 0);
+  fs::remove(out_ + "/disparity/000004.pfm");
+  ASSERT_EQ(run_vantage({"run", "-o", out_, "--resume"}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(out_ + "/disparity/000004.pfm"));
+  EXPECT_EQ(journalled_frames(out_), (std::vector<int>{2, 3, 4, 5}));
+  EXPECT_THAT(merge().err, HasSubstr("--resume --frames all' computes them"));
+  ASSERT_EQ(run_vantage({"run", "-o", out_, "--resume", "--frames", "all"}).exit_code, 0);
+  EXPECT_EQ(merge().exit_code, 0);
 }
 
 TEST_F(RunFolder, DeletedResultsAreMadeAgain) {

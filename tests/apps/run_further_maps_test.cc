@@ -129,6 +129,41 @@ TEST_F(RunFurtherMaps, DepthResolutionsAreThoseOfTheDisparities) {
               read_file(folder_ / "dz.npy"));
 }
 
+TEST_F(RunFurtherMaps, CloudsMayBeEmpty) {
+  const std::string out = folder_ / "out";
+  const ProcessResult result =
+      RunTest::run(out, {"--save", "cloud,mesh", "--focal-length", "500", "--baseline", "0.2",
+                         "--max-depth", "0.001", "--frames", "0-0"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("frame 0: its cloud is empty: no pixel has"));
+  EXPECT_THAT(read_file(out + "/cloud/000000.ply"), HasSubstr("\nelement vertex 0\n"));
+  EXPECT_THAT(read_file(out + "/mesh/000000.ply"), HasSubstr("\nelement face 0\n"));
+}
+
+TEST_F(RunFurtherMaps, PosesAreCountedBeforeTheStart) {
+  const std::string out = folder_ / "out";
+  const auto run_with = [&](int poses, const std::vector<std::string>& more) {
+    std::string text;
+    for (int i = 0; i < poses; ++i) {
+      text += "1 0 0 0 0 1 0 0 0 0 1 " + std::to_string(i) + "\n";
+    }
+    write_file(folder_ / "poses.txt", text);
+    return RunTest::run(out, joined({"--save", "cloud", "--focal-length", "500", "--baseline",
+                                     "0.2", "--poses", folder_ / "poses.txt"},
+                                    more));
+  };
+  const ProcessResult few = run_with(5, {"--quiet"});
+  EXPECT_EQ(few.exit_code, 1);
+  EXPECT_TRUE(is_one_line(few, "run"));
+  EXPECT_THAT(few.err, HasSubstr("has 5 poses, expected one for each pair from 0 to 19"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  // Those of all pairs of the input, whichever are taken.
+  EXPECT_THAT(run_with(16, {"--every", "4+1", "--dry-run"}).err, HasSubstr("from 0 to 17"));
+  EXPECT_EQ(run_with(18, {"--every", "4+1", "--dry-run"}).exit_code, 0);
+  EXPECT_EQ(run_with(5, {"--frames", "1-4", "--dry-run"}).exit_code, 0);
+  EXPECT_THAT(run_with(22, {"--dry-run"}).out, HasSubstr("22 poses for 20 pairs, the last 2 are"));
+}
+
 TEST_F(RunFurtherMaps, AreMadeAgainForAVideo) {
   const std::vector<std::string> outputs = {
       "--save",  "disparity,cyclopean-occlusion", "--selection",    "symmetric",

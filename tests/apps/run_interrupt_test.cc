@@ -123,6 +123,25 @@ TEST_F(InterruptedRun, ASecondSignalKills) {
   EXPECT_TRUE(exit_code == 128 + SIGINT || exit_code == 130) << exit_code;
 }
 
+using InterruptedMatch = RunTest;
+
+TEST_F(InterruptedMatch, LeavesNoTemporaryFile) {
+  const std::string out = folder_ / "out";
+  fs::create_directory(out);
+  const TemporaryFolder streams;
+  const VantageProcess process(
+      {"match", left_ + "/" + frame_file(0), right_ + "/" + frame_file(0), "-o", out + "/d.pfm",
+       "--volume", out + "/v.npy", "--disparities=0:9", "--method", "membrane", "--iterations",
+       "30000"},
+      streams.path());
+  while (!process.has_ended() && leftovers_in(out).empty()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  process.send(SIGINT);
+  EXPECT_EQ(process.wait().exit_code, 128 + SIGINT);
+  EXPECT_THAT(files_below(out), IsEmpty());
+}
+
 class ClockJump : public RunTest {};
 
 TEST_F(ClockJump, NothingChangesButTheDate) {

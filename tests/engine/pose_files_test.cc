@@ -64,6 +64,7 @@ TEST(TrajectoryFile, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(problem_of_trajectory("1 0 0 x 0 0 0 1\n"),
               HasSubstr("value 4 is 'x', expected a finite number"));
   EXPECT_THAT(problem_of_trajectory("1 0 0 nan 0 0 0 1\n"), HasSubstr("value 4 is 'nan'"));
+  EXPECT_THAT(problem_of_trajectory("1 0 -1e300 0 0 0 0 1\n"), HasSubstr("coordinate of 1e+300"));
   EXPECT_THAT(problem_of_trajectory("2 0 0 0 0 1 0 0 0 0 1 0\n"), HasSubstr("with a rotation"));
   EXPECT_THAT(problem_of_trajectory("1 0 0 0 0 1 0 0 0 0 -1 0\n"), HasSubstr("with a rotation"));
   EXPECT_THAT(problem_of_trajectory("1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 2\n"), HasSubstr("0 0 0 1"));

@@ -91,9 +91,10 @@ TEST_F(RunJournalTest, BringsBackWhatWasRecorded) {
                                                 SegmentRecord{{0, 9}, {{"a.mp4", {5, 6}}}}};
     journal.append(records);
     append(journal, JoinRecord{{0, 9}, {5}, {{"b.mp4", {7, 8}}}});
+    append(journal, ReportRecord{{0, 9}, {{"comfort.json", {9, 1}}}});
   }
   const auto records = RunJournal::read_records(journal_).records;
-  ASSERT_EQ(records.size(), 5U);
+  ASSERT_EQ(records.size(), 6U);
   const auto& first = std::get<FrameRecord>(records[0]);
   EXPECT_EQ(first.frame, 4);
   EXPECT_FALSE(first.skipped);
@@ -110,6 +111,9 @@ TEST_F(RunJournalTest, BringsBackWhatWasRecorded) {
   EXPECT_EQ(std::get<JoinRecord>(records[4]).frames, (FrameRange{0, 9}));
   EXPECT_THAT(std::get<JoinRecord>(records[4]).files, ElementsAre(FileRecord{"b.mp4", {7, 8}}));
   EXPECT_THAT(std::get<JoinRecord>(records[4]).skipped, ElementsAre(5));
+  EXPECT_EQ(std::get<ReportRecord>(records[5]).frames, (FrameRange{0, 9}));
+  EXPECT_THAT(std::get<ReportRecord>(records[5]).files,
+              ElementsAre(FileRecord{"comfort.json", {9, 1}}));
 }
 
 TEST_F(RunJournalTest, TheIdentityIsKept) {
