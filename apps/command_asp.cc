@@ -16,6 +16,7 @@
 #include "engine/error.h"
 #include "engine/image/no_data.h"
 #include "engine/io/disparity_io.h"
+#include "engine/io/map_formats.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
@@ -67,6 +68,12 @@ void check(const AspJob& job, const Settings& settings) {
   if (job.min_px && *job.min_px > *job.max_px) {
     throw UsageError(fmt::format("--disp-min is {} and --disp-max {}, expected the smaller first",
                                  *job.min_px, *job.max_px));
+  }
+  if (has_extension(job.output, {".png"})) {
+    throw UsageError(
+        fmt::format("DISPARITY is '{}', but PNG holds no gaps and no negative numbers, "
+                    "expected {}",
+                    job.output, listed_map_formats(MapContent::kConfidence)));
   }
   FileChecks files(settings);
   files.add_output(job.output, "DISPARITY", OutputKind::kDisparity);
@@ -155,8 +162,8 @@ int command_asp(const Arguments& arguments) {
   DisparityMap left;
   DisparityMap right;
   report.timed_file_access("read", [&] {
-    left = read_disparity(job.left);  // floats, with NaN
-    right = read_disparity(job.right);
+    left = read_float_image(job.left);
+    right = read_float_image(job.right);
   });
   const int width = left.width();
   const int height = left.height();

@@ -304,6 +304,7 @@ int command_match(const Arguments& arguments) {
   if (job.vertical) {
     transpose(images);
   }
+  require_volume_rows(job.volume, job.vertical ? images[0].width() : images[0].height());
   std::optional<Rectifier> rectifier;
   std::array<Photograph, 2> rectified;  // for the search range
   if (!job.unrectified.empty()) {

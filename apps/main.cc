@@ -20,6 +20,7 @@
 #include "engine/build_info.h"
 #include "engine/error.h"
 #include "engine/quoted_text.h"
+#include "scheduler/interruption.h"
 
 namespace {
 
@@ -151,6 +152,8 @@ int main(int argc, char** argv) {
     exit_code = run(std::move(arguments), command);
   } catch (const vantage::UsageError& error) {
     return fail(command, error.what(), vantage::apps::kExitUsage);
+  } catch (const vantage::scheduler::Interrupted&) {
+    return vantage::apps::kExitInterrupted;
   } catch (const std::bad_alloc& error) {
     return fail(command, vantage::apps::memory_problem(error), vantage::apps::kExitFailed);
   } catch (const std::system_error& error) {

@@ -12,6 +12,7 @@
 #include "engine/io/disparity_io.h"
 #include "engine/io/map_formats.h"
 #include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/match_inputs.h"
 
 namespace vantage::apps {
 namespace {
@@ -33,8 +34,9 @@ void add_several_settings(Settings& settings, MatchJob& job) {
   more.get = [&job] { return job.more; };
   add_baselines_setting(settings, job.baselines,
                         "Positions of the cameras of all images but the first, relative to the "
-                        "first, positive to the "
-                        "right; disparities are those between the first two images");
+                        "first, positive to the right; disparities are x_left - x_right of the "
+                        "first two images, of which the second is the left one if its position is "
+                        "negative");
 }
 
 void add_file_settings(Settings& settings, MatchJob& job) {
@@ -95,6 +97,11 @@ void add_file_settings(Settings& settings, MatchJob& job) {
 
 void check_several(const MatchJob& job, const Settings& settings) {
   check_baselines(settings, job.baselines, 1 + job.more.size());
+  std::vector<OtherView> others;
+  for (const double baseline : job.baselines) {
+    others.push_back({nullptr, baseline});
+  }
+  require_different_baselines(others);
   if (job.match.reference == Side::kRight) {
     throw UsageError(
         "--reference right cannot be used with --baselines: the first image is the reference");

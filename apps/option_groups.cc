@@ -31,7 +31,8 @@ void add_common_settings(Settings& settings, CommonOptions& options, Work work) 
                      "Iterations per pass over memory; auto: from the cache sizes");
   }
   settings.text("isa", options.isa, "NAME",
-                "Instruction set of the kernels: best, or a name from 'vantage info'");
+                "Instruction set of the kernels: best, or a name from 'vantage info'; with "
+                "--prior-smoothing sum it changes last bits");
   settings.start_group("Messages", false);
   settings.path("report", options.report, "FILE", "Write a JSON report");
   settings.path("trace", options.trace, "FILE",

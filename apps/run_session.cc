@@ -8,6 +8,7 @@
 
 #include "apps/automatic_disparities.h"
 #include "apps/frame_step_setting.h"
+#include "apps/interrupt.h"
 #include "apps/rectification_check.h"
 #include "apps/resumed_run.h"
 #include "apps/stream_run.h"
@@ -18,16 +19,24 @@
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/sequence_range.h"
+#include "scheduler/interruption.h"
 
 namespace vantage::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
+void require_no_interrupt() {
+  if (interrupt_flag().load()) {
+    throw scheduler::Interrupted();
+  }
+}
+
 /// The first pair that a run takes from a stream; those before it are dropped.
 void read_first_streamed_pair(PairSource& pairs, int first, FramePair& pair) {
   pairs.skip_to(first);
   if (!pairs.fetch(pair)) {
+    require_no_interrupt();
     throw Error(fmt::format("{}: the stream ends before it", pairs.describe(first)));
   }
   pairs.decode(pair);
@@ -141,6 +150,9 @@ std::string RunSession::part_name(const RunJob& job) {
 RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   FileChecks files = check_files(job, settings);
   RunSession session;
+  if (reads_stream(job)) {
+    job.input.stop = &interrupt_flag();
+  }
   open_source(job, session);
   session.selection.shard = job.shard;
   for (const fs::path& file : session.pairs->files()) {
@@ -170,11 +182,16 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   const auto find_range = [&] {
     // Estimating the range of a video without an index decodes the whole video.
-    const std::optional<DisparityRange> known = range_of_run_to_resume(job);
-    return known ? known
-                 : find_sequence_range(
-                       *session.pairs, rectify, execution,
-                       job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero);
+    if (const std::optional<DisparityRange> known = range_of_run_to_resume(job)) {
+      return known;
+    }
+    const auto found =
+        find_sequence_range(*session.pairs, rectify, execution,
+                            job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero);
+    if (session.pairs->is_stream()) {
+      require_no_interrupt();
+    }
+    return found;
   };
   choose_disparities(settings, job.common, find_range, job.sequence.match, report);
   session.pairs->forget_start();

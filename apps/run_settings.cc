@@ -204,7 +204,10 @@ void complete(RunJob& job, const Settings& settings) {
   }
   if (job.sequence.search_range_per_shot && job.memory_bytes) {
     throw UsageError(
-        "search-range is shot, expected film with --memory, which plans for one range");
+        settings.is_set("search-range")
+            ? "search-range is shot, expected film with --memory, which plans for one range"
+            : "--memory plans for one range of disparities, but each shot of a film is searched in "
+              "its own; expected --search-range film too, or a range in --disparities");
   }
   if (job.tuning.ignored) {
     settings.refuse_idle({"tuning"}, "with --no-tuning");

@@ -71,6 +71,14 @@ void check_volume(const VolumeOutput& output, const MatchOptions& options,
   }
 }
 
+void require_volume_rows(const VolumeOutput& output, int image_rows) {
+  const int rows = ((image_rows - 1) >> output.level) + 1;  // levels are rounded up
+  if (output.rows && output.rows->end > rows) {
+    throw UsageError(fmt::format("volume-rows is {}, expected rows within 0:{}",
+                                 text_of(*output.rows), rows - 1));
+  }
+}
+
 SettingValue volume_report(const VolumeOutput& output, const NpyVolumeFile& volume) {
   const VolumeShape& shape = volume.volume();
   SettingValue report = {{"file", output.file},

@@ -25,6 +25,10 @@ void add_volume_settings(Settings& settings, VolumeOutput& output);
 void check_volume(const VolumeOutput& output, const MatchOptions& options,
                   const Settings& settings);
 
+/// Throws UsageError unless the level of an image with so many rows has the wanted ones. Call it
+/// before the search; the file knows exactly.
+void require_volume_rows(const VolumeOutput& output, int image_rows);
+
 /// What a reader of the file has to know: shape, candidates, meaning of the values.
 SettingValue volume_report(const VolumeOutput& output, const NpyVolumeFile& volume);
 /// volume_report() as one line of text.

@@ -77,6 +77,23 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
       stored.photograph.pixels);
 }
 
+Image<float> read_float_image(const std::filesystem::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  const FileBytes file(bytes, path.string());
+  if (is_npy(file)) {
+    return finite_of(decode_npy(file));
+  }
+  const DecodedImage stored = decode_image(file);
+  const auto* const floats = std::get_if<Image<float>>(&stored.photograph.pixels);
+  const int channels = stored.photograph.channels();
+  if (floats == nullptr || channels != 1) {
+    file.fail(fmt::format("holds {} in {} channel{}, expected floats in 1 channel",
+                          floats == nullptr ? "integers" : "floats", channels,
+                          channels == 1 ? "" : "s"));
+  }
+  return finite_of(*floats);
+}
+
 void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
                       std::vector<std::uint8_t>& bytes) {
   const MapFormat* const format = find_map_format(path, MapContent::kDisparity);

@@ -16,6 +16,10 @@ namespace vantage {
 /// Thread rule: may be called concurrently.
 DisparityMap read_disparity(const std::filesystem::path& path, double scale = 0);
 
+/// Reads a file with one channel of floats, which may be NaN: .tiff, .pfm, .exr, .npy. Infinite
+/// values become NaN. Throws Error naming the file and the problem.
+Image<float> read_float_image(const std::filesystem::path& path);
+
 /// Writes by extension (map_formats.h): .pfm (little-endian, bottom-up, unknown = +inf), .png
 /// (16-bit, ×256, 0 = unknown; values out of range are an Error; known values that round to 0
 /// become 1/256, as in KITTI's own files), .tiff/.exr (float, NaN), .npy (float32). NaN and ±inf in

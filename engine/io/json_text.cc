@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "engine/error.h"
@@ -81,6 +82,9 @@ Json read_json_file(const std::filesystem::path& file) {
 std::string quoted_json(const Json& value) {
   if (value.is_string()) {
     return fmt::format("'{}'", quotable(value.get_ref<const std::string&>()));
+  }
+  if (value.is_number_float() && !std::isfinite(value.get<double>())) {
+    return fmt::format("{}", value.get<double>());  // JSON has none and writes null
   }
   return quotable(value.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

@@ -43,7 +43,9 @@ class LibavFunctions {
   VANTAGE_LATE_FUNCTION(format_, avformat_new_stream);
   VANTAGE_LATE_FUNCTION(format_, avformat_open_input);
   VANTAGE_LATE_FUNCTION(format_, avformat_write_header);
+  VANTAGE_LATE_FUNCTION(format_, avio_alloc_context);
   VANTAGE_LATE_FUNCTION(format_, avio_closep);
+  VANTAGE_LATE_FUNCTION(format_, avio_context_free);
   VANTAGE_LATE_FUNCTION(format_, avio_feof);
   VANTAGE_LATE_FUNCTION(format_, avio_open);
 

@@ -16,6 +16,7 @@
 #include "engine/io/libav_functions.h"
 #include "engine/io/photograph_io.h"
 #include "engine/io/video_encoder.h"
+#include "scheduler/interruption.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -28,7 +29,8 @@ namespace {
 
 constexpr const char* kStandardInput = "standard input";
 
-LibavInput open_stream(const std::optional<RawVideoShape>& raw, FrameRate raw_rate) {
+LibavInput open_stream(const StandardInput& bytes, const std::optional<RawVideoShape>& raw,
+                       FrameRate raw_rate) {
   silence_libav();
   const AVInputFormat* format = libav().av_find_input_format(raw ? "rawvideo" : "yuv4mpegpipe");
   AVDictionary* options = nullptr;
@@ -44,24 +46,33 @@ LibavInput open_stream(const std::optional<RawVideoShape>& raw, FrameRate raw_ra
     av_dict_set(&options, "pixel_format", raw->pixel_format.c_str(), 0);
     av_dict_set(&options, "framerate", to_string(raw_rate).c_str(), 0);
   }
-  AVFormatContext* opened = nullptr;
-  int result = libav().avformat_open_input(&opened, "pipe:0", format, &options);
+  AVFormatContext* opened = libav().avformat_alloc_context();
+  if (opened == nullptr) {
+    av_dict_free(&options);
+    throw std::bad_alloc();
+  }
+  opened->pb = bytes.io();
+  int result = libav().avformat_open_input(&opened, "", format, &options);
   av_dict_free(&options);
   LibavInput input(result < 0 ? nullptr : opened);
   if (result >= 0) {
     result = libav().avformat_find_stream_info(input.get(), nullptr);
   }
+  if (bytes.is_stopped()) {
+    throw scheduler::Interrupted();
+  }
   if (result < 0 || input->nb_streams == 0) {
-    throw Error(fmt::format("{}: is empty or no {} video ({})", kStandardInput, raw ? "raw" : "y4m",
-                            result < 0 ? libav_message(result) : std::string("no video in it")));
+    throw Error(fmt::format("{}: is empty or no {} video", kStandardInput, raw ? "raw" : "y4m"));
   }
   return input;
 }
 
 }  // namespace
 
-StreamedVideo::StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate raw_rate)
-    : input_(open_stream(raw, raw_rate)),
+StreamedVideo::StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate raw_rate,
+                             const std::atomic<bool>* stop)
+    : bytes_(std::make_unique<StandardInput>(stop)),
+      input_(open_stream(*bytes_, raw, raw_rate)),
       stream_(input_->streams[0]),
       packet_(make_libav_packet()),
       frame_(make_libav_frame()) {
@@ -77,6 +88,9 @@ StreamedVideo::StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate 
       stream_->avg_frame_rate.num > 0 ? stream_->avg_frame_rate : stream_->r_frame_rate;
   rate_ = parse_frame_rate(fmt::format("{}/{}", rate.num, rate.den)).value_or(FrameRate());
   if (!decode_next(first_)) {
+    if (bytes_->is_stopped()) {
+      throw scheduler::Interrupted();
+    }
     throw Error(fmt::format("{}: is empty, expected a video", kStandardInput));
   }
 }
@@ -102,6 +116,11 @@ bool StreamedVideo::decode_next(VideoPicture& picture) {
   }
   frames_end_ = packet_->pos >= 0 ? packet_->pos + packet_->size : -1;
   const bool is_whole = result >= 0 && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0;
+  if (!is_whole && bytes_->is_stopped()) {
+    libav().av_packet_unref(packet_.get());
+    ended_ = true;
+    return false;
+  }
   if (is_whole) {
     result = libav().avcodec_send_packet(codec_.get(), packet_.get());
     if (result >= 0) {

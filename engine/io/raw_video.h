@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 #include "engine/io/frame_source.h"
 #include "engine/io/libav.h"
 #include "engine/io/raw_video_shape.h"
+#include "engine/io/standard_input.h"
 #include "engine/io/video_coding.h"
 #include "engine/io/video_picture.h"
 
@@ -20,8 +22,11 @@ namespace vantage {
 /// false after the last one.
 class StreamedVideo final : public FrameSource {
  public:
-  /// Reads standard input. Throws Error when it is empty, or not a y4m video.
-  StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate raw_rate);
+  /// Reads standard input, which ends once `stop`, which may be null, is set. Throws Error when it
+  /// is empty, or not a y4m video; scheduler::Interrupted when it is stopped before the first
+  /// frame.
+  StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate raw_rate,
+                const std::atomic<bool>* stop);
 
   /// Throws Error naming the frame when the stream ends inside it; it has no more frames then.
   bool fetch(FetchedFrame& frame) override;
@@ -40,7 +45,8 @@ class StreamedVideo final : public FrameSource {
   bool decode_next(VideoPicture& picture);
   [[noreturn]] void fail_cut();
 
-  LibavInput input_;
+  std::unique_ptr<StandardInput> bytes_;
+  LibavInput input_;  ///< reads bytes_
   AVStream* stream_ = nullptr;
   LibavCodec codec_;
   LibavPacket packet_;

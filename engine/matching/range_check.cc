@@ -33,10 +33,10 @@ bool piles_up_at_max(const MatchesAtEnds& matches) { return matches.at_max > kPi
 
 std::string end_text(std::string_view side, int end, double at_end, double beyond) {
   std::string text =
-      fmt::format("disparities {} {} seem to be left out: {:.2g} % of the matches lie at that end",
+      fmt::format("disparities {} {} seem to be left out: {:.3g} % of the matches lie at that end",
                   side, end, 100 * at_end);
   if (beyond > 0) {
-    text += fmt::format(", {:.2g} % of what both images show beyond", 100 * beyond);
+    text += fmt::format(", {:.3g} % of what both images show beyond", 100 * beyond);
   }
   return text;
 }

@@ -75,7 +75,8 @@ int taken_step(const FrameStep& every, const PairSource& pairs) {
 std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
   if (options.stereo == "-") {
     return std::make_unique<PackedPairs>(
-        std::make_unique<StreamedVideo>(options.raw_video, options.raw_rate), *options.packing);
+        std::make_unique<StreamedVideo>(options.raw_video, options.raw_rate, options.stop),
+        *options.packing);
   }
   if (!options.stereo.empty()) {
     return std::make_unique<PackedPairs>(open_frame_source(options.stereo), *options.packing);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -67,6 +68,7 @@ struct PairSourceOptions {
   /// "-": y4m from standard input, or rawvideo of this shape and frame rate (see StreamedVideo).
   std::optional<RawVideoShape> raw_video;
   FrameRate raw_rate;
+  const std::atomic<bool>* stop = nullptr;  ///< "-": reading ends once it is set
   /// A CSV file with the columns left,right: one pair of image files per line. Names are relative
   /// to the file's folder; an optional heading "left,right", empty lines and lines that start with
   /// # are skipped; quotes as in RFC 4180, blanks around unquoted fields are dropped.

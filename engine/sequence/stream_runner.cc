@@ -47,7 +47,9 @@ class StreamRun {
     };
     const scheduler::FrameOutcome outcome =
         scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip, run_.stop);
-    report_.interrupted = outcome.interrupted;
+    // Where the source is a stream, it has ended early.
+    report_.interrupted = outcome.interrupted ||
+                          (run_.pairs.is_stream() && run_.stop != nullptr && run_.stop->load());
     report_.compute_seconds = worker_.compute_seconds();
     for (const FrameSlot& slot : slots_) {
       report_.memory.add("frames in flight", held_bytes(slot));

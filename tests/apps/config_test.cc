@@ -263,7 +263,7 @@ TEST_F(InputConfig, BadFilesAreOneLine) {
       {"window = 5.5\n", "window is 5.5, expected a whole number"},
       {"window = [5, 7]\n", "window is [5,7], expected a whole number"},
       {"raw = 1\n", "raw is 1, expected true or false"},
-      {"cross-check = inf\n", "cross-check is"},
+      {"cross-check = inf\n", "cross-check is inf, expected"},
       {"left = 3\n", "left is 3, expected a text"},
       {"window = 99999999999\n", "expected a whole number"},
       {"[match]\nwindow = 5\n", "'match' is a table"},

@@ -173,6 +173,8 @@ TEST_F(InputMatchOptions, ImagesOfUnequalSizeAmongSeveralAreNamed) {
   EXPECT_TRUE(is_one_line(result, "match"));
   EXPECT_THAT(result.err, HasSubstr("small.png is 7x9 but "));
   EXPECT_THAT(result.err, HasSubstr("left.png is 71x53, expected equal sizes"));
+  // Positions are looked at before images are read.
+  EXPECT_EQ(match(folder_ / "out.pfm", {folder_ / "small.png", "--baselines=1,1"}).exit_code, 2);
 }
 
 TEST_F(InputMatchOptions, AFileOrAPrintedConfigIsLookedAtLikeTheCommandLine) {

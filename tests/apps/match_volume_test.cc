@@ -62,6 +62,14 @@ TEST_F(MatchVolume, RefusesInOneLineAndLeavesNothing) {
   expect_refused({"--volume", file, "--volume-rows", "5:4"}, "volume-rows is 5:4");
   expect_refused({"--volume", file, "--volume-rows", "5:53"}, "expected rows within 0:52");
   expect_refused({"--volume", folder_ / "v.pfm"}, "ends in .npy");
+  // Before the search range, which these images have none of.
+  write_photograph(left_, Photograph{Image<std::uint8_t>(70, 53, 1)});
+  write_photograph(right_, Photograph{Image<std::uint8_t>(70, 53, 1)});
+  const ProcessResult early =
+      run_vantage({"match", left_, right_, "-o", folder_ / "m.pfm", "--volume", file,
+                   "--volume-rows", "5:27", "--preset", "balanced", "--volume-level", "1"});
+  EXPECT_EQ(early.exit_code, 2);
+  EXPECT_THAT(early.err, HasSubstr("expected rows within 0:26"));
   expect_refused({"--volume", file, "--preset", "realtime", "--search-size", "half"},
                  "expected search-size full");
 }

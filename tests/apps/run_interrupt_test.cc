@@ -132,7 +132,7 @@ TEST_F(InterruptedMatch, LeavesNoTemporaryFile) {
   const VantageProcess process(
       {"match", left_ + "/" + frame_file(0), right_ + "/" + frame_file(0), "-o", out + "/d.pfm",
        "--volume", out + "/v.npy", "--disparities=0:9", "--method", "membrane", "--iterations",
-       "30000"},
+       "10000"},
       streams.path());
   while (!process.has_ended() && leftovers_in(out).empty()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));

@@ -195,5 +195,27 @@ TEST_F(RunStreamFolders, KeepWhatIsDoneWhenTheyAreStopped) {
   }
 }
 
+TEST_F(RunStreamFolders, AreStoppedWhileThePipeIsSilent) {
+  const std::string raw = folder_ / "raw";
+  const std::string pipe = folder_ / "pipe";
+  const std::string size = std::to_string(2 * kWidth) + "x" + std::to_string(kHeight);
+  write_file(raw, raw_pairs(3) + std::string(500, 'x'));  // ends inside a frame
+  const auto exit_code_of = [&](const std::string& out, const std::string& is_waiting) {
+    return shell("rm -f " + pipe + "; mkfifo " + pipe + "; " +
+                 command(options("-", out,
+                                 {"--raw-video", size, "--save", "preview", "--disparities=0:9",
+                                  "--in-flight", "1"})) +
+                 " <" + pipe + " >" + (folder_ / "stdout") + " & pid=$!; exec 3>" + pipe +
+                 "; cat " + raw + " >&3; until " + is_waiting +
+                 "; do sleep 0.02; done; kill -TERM $pid; (sleep 5; kill -KILL $pid) & wait $pid");
+  };
+  EXPECT_EQ(exit_code_of(out_, "[ -e " + out_ + "/preview/000002.png ]"), 130) << err();
+  EXPECT_EQ(files_below(out_ + "/preview").size(), 3U);
+  EXPECT_EQ(exit_code_of("-", "[ -s " + (folder_ / "stdout") + " ]"), 130) << err();
+  // Before the first frame is complete.
+  write_file(raw, "x");
+  EXPECT_EQ(exit_code_of("-", "sleep 0.2"), 130) << err();
+}
+
 }  // namespace run_stream_folder_test
 }  // namespace vantage

@@ -135,6 +135,7 @@ class Asp(unittest.TestCase):
                  (("--disp-min", "3"), self.whole[1], "out.tif", "expected both"),
                  (("--disp-min=3", "--disp-max=2"), self.whole[1], "out.tif", "smaller first"),
                  ((), self.whole[1], "out.txt", "out.txt"),
+                 ((), self.whole[1], "out.png", "PNG holds no gaps"),
                  ((), self.whole[1], "nowhere/out.tif", "nowhere")]
         for options, right, output, message in cases:
             done = self.call((self.whole[0], right), *options, output=output)
