@@ -106,7 +106,8 @@ int command_scene_build(const Arguments& arguments) {
   Settings settings(
       "scene build",
       "Matches neighbouring images of a row or grid of cameras, or of hand-held cameras "
-      "with poses. --disparities is for the nearest neighbours; with --poses for "
+      "with poses ('vantage scene poses'). --disparities is for the nearest neighbours; with "
+      "--poses for "
       "those at the median distance.");
   add_file_settings(settings, job);
   add_match_settings(settings, job.match);

@@ -17,6 +17,7 @@ constexpr std::array kCommands = {
             command_merge},
     Command{"verify", "Finds damaged files in the results of a run", command_verify},
     Command{"submit", "Runs a sequence on a Slurm cluster", command_submit},
+    Command{"scene poses", "Where the cameras of hand-held photographs stood", command_scene_poses},
     Command{"scene build", "Matches neighbouring images of a row or grid of cameras",
             command_scene_build},
     Command{"scene view", "New views between the images of a scene", command_scene_view},

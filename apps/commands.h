@@ -34,6 +34,7 @@ int command_run(const Arguments& arguments);
 int command_reproject(const Arguments& arguments);
 int command_rectify(const Arguments& arguments);
 int command_eval(const Arguments& arguments);
+int command_scene_poses(const Arguments& arguments);
 int command_scene_build(const Arguments& arguments);
 int command_scene_view(const Arguments& arguments);
 int command_asp(const Arguments& arguments);

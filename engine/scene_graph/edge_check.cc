@@ -33,9 +33,9 @@ std::optional<VerticalError> require_rectified(const Photograph& first, const Ph
   const std::optional<VerticalError> error = edge_error(first, second, kMaxEdgeError_px);
   if (error && error->systematic_px > kMaxEdgeError_px) {
     throw Error(fmt::format(
-        "not a rectified pair: {} are off by {:.2f} px ({} points), expected at most {} px; align "
-        "the images with 'vantage rectify', correct their positions, or accept them with "
-        "`no-rectification-check`",
+        "not a rectified pair: {} are off by {:.2f} px ({} points), expected at most {} px; find "
+        "the poses of hand-held cameras with 'vantage scene poses', align two images with 'vantage "
+        "rectify', correct their positions, or accept them with `no-rectification-check`",
         lines, error->systematic_px, error->inliers, kMaxEdgeError_px));
   }
   return error;

@@ -1,0 +1,232 @@
+// Hand-held photographs without poses: `scene poses`, and what `scene build` makes of its model.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "engine/evaluation/view_evaluation.h"
+#include "engine/generation/layered_scene.h"
+#include "engine/io/photograph_io.h"
+#include "tests/apps/vantage_process.h"
+#include "tests/temporary_folder.h"
+
+namespace vantage {
+namespace estimated_scene_test {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+Eigen::Matrix3d turned(double x, double y, double z) {
+  constexpr double kDegree = std::numbers::pi / 180;
+  const Eigen::Vector3d radians = Eigen::Vector3d(x, y, z) * kDegree;
+  return Eigen::AngleAxisd(radians.norm(), radians.normalized()).toRotationMatrix();
+}
+
+struct ModelImage {
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
+  std::map<int, Eigen::Vector2d> seen;  // by number of the point, in COLMAP's pixels
+};
+
+/// A plain reader of images.txt.
+std::map<std::string, ModelImage> model_images(const std::string& folder) {
+  std::istringstream lines(read_file(folder + "/images.txt"));
+  std::map<std::string, ModelImage> images;
+  std::string line;
+  while (std::getline(lines, line)) {
+    if (line.starts_with("#")) {
+      continue;
+    }
+    std::istringstream pose(line);
+    double id = 0;
+    double w = 0;
+    double x = 0;
+    double y = 0;
+    double z = 0;
+    double camera = 0;
+    std::string name;
+    ModelImage image;
+    pose >> id >> w >> x >> y >> z >> image.translation.x() >> image.translation.y() >>
+        image.translation.z() >> camera >> name;
+    image.rotation = Eigen::Quaterniond(w, x, y, z).toRotationMatrix();
+    std::getline(lines, line);
+    std::istringstream points(line);
+    double u = 0;
+    double v = 0;
+    int point = 0;
+    while (points >> u >> v >> point) {
+      image.seen[point] = {u, v};
+    }
+    images[name] = image;
+  }
+  return images;
+}
+
+class EstimatedScene : public testing::Test {
+ protected:
+  static LayeredSceneOptions small_scene() {
+    LayeredSceneOptions options;
+    options.width_px = 240;
+    options.height_px = 180;
+    options.samples_per_side = 2;
+    return options;
+  }
+
+  EstimatedScene() {
+    fs::create_directory(images_);
+    add({0, 0, 0.05}, turned(0.5, -0.8, 2));
+    add({1, 0.1, 0}, turned(-0.4, 0.6, -3));
+    add({0.1, 0.9, -0.1}, turned(0.7, 0.3, 1));
+    add({0.9, 1, 0.1}, turned(-0.6, -0.5, 4));
+    const Eigen::Matrix3d& k = cameras_[0].matrix;
+    write_file(lens_, fmt::format("{} {} {} {}\n", k(0, 0), k(1, 1), k(0, 2), k(1, 2)));
+  }
+
+  void add(const Eigen::Vector3d& centre, const Eigen::Matrix3d& rotation) {
+    PosedCamera made = scene_.camera({});
+    made.rotation = rotation;
+    made.translation = -rotation * centre;
+    write_photograph(fmt::format("{}/{}.png", images_, cameras_.size()),
+                     scene_.render(made, 0).image);
+    cameras_.push_back(made);
+  }
+
+  [[nodiscard]] ProcessResult poses(const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {"scene", "poses", "--images", images_, "-o", model_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  }
+
+  Execution execution_{{.threads = 2}};
+  LayeredScene scene_{small_scene(), execution_};
+  TemporaryFolder folder_;
+  std::string images_ = folder_ / "images";
+  std::string model_ = folder_ / "model";
+  std::string lens_ = folder_ / "lens.txt";
+  std::vector<PosedCamera> cameras_;
+};
+
+TEST_F(EstimatedScene, PosesLeadToViewsAndClouds) {
+  const double metres = (cameras_[3].centre() - cameras_[0].centre()).norm();
+  const ProcessResult found =
+      poses({"--intrinsics", lens_, "--known-distance", fmt::format("0:3:{}", metres), "--report",
+             folder_ / "poses.json"});
+  ASSERT_EQ(found.exit_code, 0) << found.err;
+  EXPECT_THAT(found.err, HasSubstr("4 of 4 images"));
+  const auto images = model_images(model_);
+  ASSERT_EQ(images.size(), 4U);
+  const Eigen::Matrix3d first_turn = cameras_[0].rotation;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const ModelImage& image = images.at(fmt::format("{}.png", i));
+    const Eigen::Matrix3d truth = cameras_[i].rotation * first_turn.transpose();
+    EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(truth * image.rotation.transpose())).angle(), 0.01);
+    const Eigen::Vector3d centre = first_turn * (cameras_[i].centre() - cameras_[0].centre());
+    EXPECT_LT((-image.rotation.transpose() * image.translation - centre).norm(), 0.05 * metres);
+  }
+  // Points are where their images show them.
+  std::istringstream lines(read_file(model_ + "/points3D.txt"));
+  std::string line;
+  std::getline(lines, line);
+  double sum = 0;
+  int sightings = 0;
+  while (std::getline(lines, line)) {
+    std::istringstream point(line);
+    int number = 0;
+    Eigen::Vector3d at;
+    point >> number >> at.x() >> at.y() >> at.z();
+    for (const auto& [name, image] : images) {
+      if (image.seen.contains(number)) {
+        const Eigen::Vector3d seen = cameras_[0].matrix * (image.rotation * at + image.translation);
+        sum += (seen.hnormalized() + Eigen::Vector2d(0.5, 0.5) - image.seen.at(number)).norm();
+        ++sightings;
+      }
+    }
+  }
+  EXPECT_GT(sightings, 300);
+  EXPECT_LT(sum / sightings, 0.5);
+  const auto results = nlohmann::json::parse(read_file(folder_ / "poses.json")).at("results");
+  EXPECT_EQ(results.at("unit"), "metre");
+  EXPECT_EQ(results.at("sightings"), sightings);
+  EXPECT_LE(results.at("median_px"), results.at("median_px_before_adjustment"));
+
+  const std::string place = folder_ / "scene";
+  const ProcessResult built = run_vantage({"scene", "build", "--poses", model_, "--images", images_,
+                                           "-o", place, "--preset", "fast", "--disparities=0:20"});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  PosedCamera wanted = scene_.camera({});
+  wanted.rotation = turned(0.2, 0.3, 1);
+  wanted.translation = -wanted.rotation * Eigen::Vector3d(0.5, 0.5, 0.05);
+  const Eigen::Matrix3d r = wanted.rotation * first_turn.transpose();
+  const Eigen::Vector3d t =
+      -r * (first_turn * (Eigen::Vector3d(0.5, 0.5, 0.05) - cameras_[0].centre()));
+  const Eigen::Matrix3d& k = wanted.matrix;
+  const nlohmann::json view = {
+      {"view",
+       {{{"K", {k(0, 0), 0, k(0, 2), 0, k(1, 1), k(1, 2), 0, 0, 1}},
+         {"R", {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
+         {"t", {t.x(), t.y(), t.z()}}}}}};
+  write_file(folder_ / "pose.json", view.dump());
+  ASSERT_EQ(run_vantage({"scene", "view", place, "--pose", folder_ / "pose.json", "-o",
+                         folder_ / "view.png"})
+                .exit_code,
+            0);
+  EXPECT_GT(evaluate_view(read_photograph(folder_ / "view.png"), scene_.render(wanted, 0).image,
+                          execution_)
+                .psnr_db,
+            22);
+  const ProcessResult cloud = run_vantage({"scene", "cloud", place, "-o", folder_ / "cloud.ply"});
+  EXPECT_EQ(cloud.exit_code, 0) << cloud.err;
+}
+
+TEST_F(EstimatedScene, ImagesThatDoNotBelongAreNamed) {
+  LayeredSceneOptions other = small_scene();
+  other.seed = 9;
+  other.has_boards = true;
+  write_photograph(images_ + "/4.png",
+                   LayeredScene(other, execution_).render(SceneView{}, 50).image);
+  const ProcessResult found = poses({});
+  EXPECT_EQ(found.exit_code, 3) << found.err;
+  EXPECT_THAT(found.err, HasSubstr("4.png is left out: no pair joins it to the other images"));
+  EXPECT_THAT(found.err, HasSubstr("4 of 5 images"));
+  EXPECT_THAT(found.err, HasSubstr("lengths have no scale"));
+  EXPECT_EQ(model_images(model_).size(), 4U);
+}
+
+TEST_F(EstimatedScene, WrongInputIsRefused) {
+  const auto problem = [&](const std::vector<std::string>& more) {
+    const ProcessResult result = poses(more);
+    EXPECT_NE(result.exit_code, 0);
+    EXPECT_FALSE(fs::exists(model_ + "/images.txt"));
+    return result.err;
+  };
+  EXPECT_THAT(problem({"--known-distance", "0:0:1"}), HasSubstr("two different images"));
+  EXPECT_THAT(problem({"--known-distance", "0:7:1"}), HasSubstr("names image 7, expected 0 to 3"));
+  EXPECT_THAT(problem({"--partners", "0"}), HasSubstr("--partners is 0"));
+  write_file(lens_, "OPENCV");
+  EXPECT_THAT(problem({"--intrinsics", lens_}), HasSubstr("lens.txt"));
+  write_file(lens_, "");
+  LayeredSceneOptions other = small_scene();
+  other.width_px = 200;
+  write_photograph(images_ + "/9.png",
+                   LayeredScene(other, execution_).render(SceneView{}, 0).image);
+  EXPECT_THAT(problem({}), HasSubstr("9.png is 200x180, expected 240x180 as"));
+  write_file(images_ + "/9.png", "no image");
+  EXPECT_THAT(problem({}), HasSubstr("9.png"));
+  for (const char* name : {"1", "2", "3", "9"}) {
+    fs::remove(images_ + "/" + name + ".png");
+  }
+  EXPECT_THAT(problem({}), HasSubstr("there are 1 images, expected 2 to 500"));
+}
+
+}  // namespace estimated_scene_test
+}  // namespace vantage
