@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <optional>
 #include <string_view>
 #include <tuple>
@@ -15,6 +16,7 @@
 #include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stage_clock.h"
 #include "engine/matching/windows/window_level.h"
+#include "engine/out_of_memory.h"
 
 namespace vantage {
 namespace {
@@ -327,9 +329,17 @@ void StereoMatcher::compute_symmetric(MapTask& left, MapTask& right, bool wants_
                                       std::span<const VolumeRequest> volumes) const {
   const int width = left.image->width();
   const int height = left.image->height();
-  prepared.right_energies.resize({width, height},
-                                 candidate_geometry(in_force_, Side::kLeft, width, height).lanes(),
-                                 sizeof(kernels::StepEnergy));
+  try {
+    prepared.right_energies.resize(
+        {width, height}, candidate_geometry(in_force_, Side::kLeft, width, height).lanes(),
+        sizeof(kernels::StepEnergy));
+  } catch (const std::bad_alloc&) {
+    const int candidates = candidate_count(in_force_.disparities, in_force_.parameters);
+    throw OutOfMemory(fmt::format(
+        "symmetric selection, which keeps {} MiB of energies ({}x{} pixels, {} candidates)",
+        symmetric_energy_bytes(in_force_.parameters, {width, height}, candidates) >> 20, width,
+        height, candidates));
+  }
   SymmetricPlace place{.right = &prepared.right_energies};
   left.input.symmetric = right.input.symmetric = &place;
   compute(right, "match right", wants_confidence, 0, prepared, clock, report, volumes);

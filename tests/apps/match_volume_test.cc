@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/apps/pair_fixture.h"
+#include "tests/test_paths.h"
 
 namespace vantage {
 namespace match_volume_test {
@@ -103,6 +104,26 @@ TEST_F(MatchVolume, MeanAndVarianceOfProbabilities) {
       match(folder_ / "m.pfm", {"--method", "ssd", "--posterior-mean", mean});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("only the aggregation bayes has p(d)"));
+}
+
+TEST_F(MatchVolume, SymmetricSelectionSaysWhatItWouldKeep) {
+  if (test_paths::is_sanitized()) {
+    GTEST_SKIP() << "sanitizers need memory of their own";
+  }
+  Image<std::uint8_t> image(600, 300);
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      image.at(x, y) = static_cast<std::uint8_t>((x * 37 + y * 91 + x * y) % 251);
+    }
+  }
+  write_photograph(folder_ / "large.png", {std::move(image)});
+  const ProcessResult result =
+      run_vantage({"match", folder_ / "large.png", folder_ / "large.png", "-o", folder_ / "m.pfm",
+                   "--disparities=0:500", "--selection", "symmetric", "--memory", "40M"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_TRUE(is_one_line(result, "match")) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("symmetric selection, which keeps 175 MiB of energies (600x300 "
+                                    "pixels, 501 candidates)"));
 }
 
 }  // namespace match_volume_test
