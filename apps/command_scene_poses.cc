@@ -293,8 +293,7 @@ int command_scene_poses(const Arguments& arguments) {
   settings.set_short_help(
       {"images", "intrinsics", "output", "known-distance", "partners", "threads", "quiet"},
       {"vantage scene poses --images photographs/ -o model",
-       "vantage scene poses --images photographs/ --intrinsics camera.yml --known-distance "
-       "0:1:0.25 -o model",
+       "vantage scene poses --images photographs/ --known-distance 0:1:0.25 -o model",
        "vantage scene build --poses model --images photographs/ -o scene"});
   if (!settings.read(arguments)) {
     return kExitDone;

@@ -12,12 +12,12 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/order_statistics.h"
 #include "engine/pose_estimation/bundle_adjustment.h"
 #include "engine/pose_estimation/camera_positions.h"
 #include "engine/pose_estimation/feature_tracks.h"
 #include "engine/pose_estimation/rotation_averaging.h"
 #include "engine/pose_estimation/rotation_vector.h"
-#include "engine/order_statistics.h"
 
 namespace vantage {
 namespace {
@@ -290,7 +290,7 @@ void take_poses(const Bundle& bundle, const std::vector<int>& numbers,
       sighting.image = numbers[static_cast<std::size_t>(sighting.image)];
     }
   }
-  const std::vector<double> all = bundle.errors_px();
+  std::vector<double> all = bundle.errors_px();
   estimate.rms_px = rms_of(all);
   estimate.sightings = static_cast<int>(all.size());
   estimate.median_px = upper_median(all);
@@ -323,7 +323,7 @@ void check_pairs(const std::vector<PairGeometry>& pairs, CameraEstimate& estimat
 void CameraEstimationOptions::validate() const {
   if (partners < 1 || partners > kMaxPartners) {
     throw UsageError(
-        fmt::format("--partners is {}, expected a number from 1 to {}", partners, kMaxPartners));
+        fmt::format("partners is {}, expected a number from 1 to {}", partners, kMaxPartners));
   }
   features.validate();
 }

@@ -211,7 +211,7 @@ TEST_F(EstimatedScene, WrongInputIsRefused) {
   };
   EXPECT_THAT(problem({"--known-distance", "0:0:1"}), HasSubstr("two different images"));
   EXPECT_THAT(problem({"--known-distance", "0:7:1"}), HasSubstr("names image 7, expected 0 to 3"));
-  EXPECT_THAT(problem({"--partners", "0"}), HasSubstr("--partners is 0"));
+  EXPECT_THAT(problem({"--partners", "0"}), HasSubstr("partners is 0"));
   write_file(lens_, "OPENCV");
   EXPECT_THAT(problem({"--intrinsics", lens_}), HasSubstr("lens.txt"));
   write_file(lens_, "");
