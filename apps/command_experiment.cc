@@ -157,9 +157,11 @@ std::string describe_machine(Execution& execution) {
 
 int command_experiment(const Arguments& arguments) {
   ExperimentJob job;
-  Settings settings("experiment",
-                    "Computes figures and tables of the book: numbers (CSV), charts and pictures "
-                    "(SVG), and one page (HTML) with what the book says beside what came out.");
+  Settings settings(
+      "experiment",
+      "Computes figures and tables of D. Scharstein, View Synthesis Using Stereo Vision (1999): "
+      "numbers (CSV), charts and pictures "
+      "(SVG), and one page (HTML) with what the book says beside what came out.");
   add_experiment_settings(settings, job);
   add_common_settings(settings, job.common);
   settings.set_short_help(

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "apps/applied_tuning.h"
 #include "apps/automatic_disparities.h"
 #include "apps/commands.h"
+#include "apps/kitti_cameras_choice.h"
 #include "apps/match_job.h"
 #include "apps/rectification_check.h"
 #include "apps/run_report.h"
@@ -285,6 +287,10 @@ int command_match(const Arguments& arguments) {
     return kExitDone;
   }
   check(job, settings);
+  const std::vector<std::string> inputs = job.inputs();
+  choose_kitti_cameras(
+      settings, job.common, job.unrectified.empty() ? job.depth.calibration : job.unrectified,
+      std::vector<std::filesystem::path>(inputs.begin(), inputs.end()), job.depth.kitti_cameras);
   RunReport report(settings.command(), reported_settings(settings, job.match));
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
@@ -292,7 +298,7 @@ int command_match(const Arguments& arguments) {
   report.set_execution(execution);
 
   std::vector<Photograph> images;
-  for (const std::string& input : job.inputs()) {
+  for (const std::string& input : inputs) {
     images.push_back(report.timed_file_access("read", [&] { return read_photograph(input); }));
   }
   require_equal_sizes(job, images);
@@ -308,7 +314,8 @@ int command_match(const Arguments& arguments) {
   std::optional<Rectifier> rectifier;
   std::array<Photograph, 2> rectified;  // for the search range
   if (!job.unrectified.empty()) {
-    rectifier.emplace(read_stereo_calibration(job.unrectified), size.columns, size.rows);
+    rectifier.emplace(read_stereo_calibration(job.unrectified, job.depth.kitti_cameras),
+                      size.columns, size.rows);
     rectifier->apply(images[0], Side::kLeft, rectified[0], execution);
     rectifier->apply(images[1], Side::kRight, rectified[1], execution);
   }
@@ -398,7 +405,11 @@ int command_match(const Arguments& arguments) {
   if (!job.common.quiet) {
     tell("match: {} ({}), {}x{} pixels, disparities {}:{}, {} -> {}\n", job.match.chosen(),
          summary_of(job.match.resolved()), size.columns, size.rows, job.match.disparities.min,
-         job.match.disparities.max, job.left, job.output);
+         job.match.disparities.max, job.left, fmt::join(job.written_maps(), ", "));
+    if (!job.preview.empty()) {
+      tell("match: {}: blue is {} px (far), red {} px (near), black unknown\n", job.preview,
+           job.match.disparities.min, job.match.disparities.max);
+    }
     print_exposure(match);
     for (const std::string& summary : depths.summaries) {
       tell("match: {}\n", summary);

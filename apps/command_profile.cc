@@ -46,10 +46,10 @@ struct ProfileJob {
 void add_profile_settings(Settings& settings, ProfileJob& job) {
   settings.start_group("Profile");
   settings.integer("runs", job.rounds.rounds, "N",
-                   "Runs that count, on each number of threads; another one goes before");
+                   "Measured runs per number of threads, after one warm-up");
   Setting& threads = settings.add("threads", "N,N,...",
                                   "Numbers of threads to run on; auto: 1, 2, 4 and so on up to "
-                                  "those of the command");
+                                  "the command's own");
   threads.list = true;
   threads.set = [&job](const SettingValue& value) {
     job.threads.clear();

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "apps/calibration_settings.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/interrupt.h"
+#include "apps/kitti_cameras_choice.h"
 #include "apps/option_groups.h"
 #include "apps/outputs.h"
 #include "apps/progress.h"
@@ -36,6 +38,7 @@ struct RectifyJob {
   PairSourceOptions input;
   std::string calibration;  ///< file; empty: from the images alone
   int sample_pairs = 10;
+  std::optional<KittiCameras> kitti_cameras;
   RectificationOptions rectification;
   std::optional<double> baseline_m;  ///< empty: that of the calibration
   std::string output;                ///< folder
@@ -58,6 +61,7 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.input_path(
       "calibration", job.calibration, "FILE",
       "Cameras: OpenCV, Middlebury or KITTI file; default: estimated from the images");
+  add_kitti_cameras_setting(settings, job.kitti_cameras);
   settings.number("baseline", job.baseline_m, "METRES",
                   "Distance of the cameras: gives estimated cameras their scale; auto: that of "
                   "--calibration");
@@ -77,12 +81,13 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
       ".yml .yaml .xml .json; YAML and XML can be used as --calibration");
   settings.path("valid-mask", job.valid_mask, "MASK.png",
                 "Write a mask of the pixels that both rectified images cover");
-  settings.number(
-      "kept-outline", job.rectification.kept_outline, "S",
-      "Area of the rectified images: 0 no black borders, 1 nothing of the photographs is lost");
+  add_kept_outline_setting(settings, job.rectification);
 }
 
-void check(const RectifyJob& job) {
+void check(const RectifyJob& job, const Settings& settings) {
+  if (job.calibration.empty()) {
+    settings.refuse_idle({"kitti-cameras"}, "without --calibration");
+  }
   job.rectification.validate();
   job.common.execution.validate();
   job.input.validate();
@@ -181,7 +186,7 @@ int command_rectify(const Arguments& arguments) {
   if (!settings.read(arguments)) {
     return kExitDone;
   }
-  check(job);
+  check(job, settings);
   FileChecks files = check_files(job, settings);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
@@ -215,7 +220,9 @@ int command_rectify(const Arguments& arguments) {
     });
     rectification.calibration = rectification.estimate->calibration;
   } else {
-    rectification.calibration = read_stereo_calibration(job.calibration);
+    choose_kitti_cameras(settings, job.common, job.calibration, pairs->files(), job.kitti_cameras);
+    report.set_settings(settings.values());
+    rectification.calibration = read_stereo_calibration(job.calibration, job.kitti_cameras);
   }
   set_baseline(job, rectification.calibration);
   const auto rectifier_of_all = [&] {

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 
-#include "apps/metric_settings.h"
+#include "apps/calibration_settings.h"
 #include "apps/commands.h"
 #include "apps/depth_outputs.h"
 #include "apps/input_limits.h"
+#include "apps/kitti_cameras_choice.h"
 #include "apps/match_settings.h"
+#include "apps/metric_settings.h"
 #include "apps/option_groups.h"
 #include "apps/rig_scale.h"
 #include "apps/run_report.h"
@@ -29,6 +32,7 @@ struct ReprojectJob {
   std::optional<double> disparity_scale;
   Side reference = Side::kLeft;
   std::string calibration;
+  std::optional<KittiCameras> kitti_cameras;
   RectificationOptions rectification;
   RigScale rig;
   DepthOutputs outputs;
@@ -51,8 +55,8 @@ void add_reproject_settings(Settings& settings, ReprojectJob& job) {
   settings.input_path("calibration", job.calibration, "FILE",
                       "Cameras of the pair, or of the photographs that it was rectified from: "
                       "OpenCV, Middlebury or KITTI file");
-  settings.number("kept-outline", job.rectification.kept_outline, "SHARE",
-                  "As given to the command that rectified the photographs");
+  add_kept_outline_setting(settings, job.rectification);
+  add_kitti_cameras_setting(settings, job.kitti_cameras);
   add_rig_scale_settings(settings, job.rig);
   settings.start_group("Output: at least one of these");
   add_depth_output_settings(settings, job.outputs);
@@ -71,7 +75,7 @@ void check(const ReprojectJob& job, const Settings& settings) {
   }
   job.rig.require_given(job.calibration, job.outputs.first_option());
   if (job.calibration.empty()) {
-    settings.refuse_idle({"kept-outline"}, "without --calibration");
+    settings.refuse_idle({"kept-outline", "kitti-cameras"}, "without --calibration");
   }
   if (job.outputs.has_points() && job.image.empty()) {
     throw UsageError(fmt::format("--{} needs the colours of its pixels, expected --image FILE",
@@ -98,7 +102,7 @@ MapCamera camera_of(const ReprojectJob& job, int width_px, int height_px) {
   if (job.calibration.empty()) {
     return job.rig.camera(width_px, height_px, job.reference, false);
   }
-  const StereoCalibration cameras = job.rig.read(job.calibration);
+  const StereoCalibration cameras = job.rig.read(job.calibration, job.kitti_cameras);
   return map_camera(rectified_pair(cameras, width_px, height_px, job.rectification), job.reference,
                     job.rig.required_unit_of(cameras));
 }
@@ -151,6 +155,8 @@ int command_reproject(const Arguments& arguments) {
     return kExitDone;
   }
   check(job, settings);
+  const std::filesystem::path image[] = {job.image};
+  choose_kitti_cameras(settings, job.common, job.calibration, image, job.kitti_cameras);
   RunReport report(settings.command(), settings.values());
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);

@@ -41,11 +41,11 @@ void add_scene_cloud_settings(Settings& settings, SceneCloudJob& job) {
   settings.integer("min-images", job.cloud.min_images, "N",
                    "Keep points that at least N images see at the same depth, 1 to 32");
   settings.number("depth-tolerance", job.cloud.tolerance_px, "PX",
-                  "How far depths of different images may be apart, as disparity over the median "
-                  "edge");
+                  "Tolerance for agreeing depths of different images, in pixels of disparity over "
+                  "the median baseline");
   settings.number("max-depth", job.cloud.max_depth, "DEPTH",
-                  "Points are at most so far from their camera, in the unit of the poses; auto: no "
-                  "limit");
+                  "Discard points farther than this from their camera, in the unit of the poses; "
+                  "auto: no limit");
   settings.integer("cloud-step", job.cloud.step_px, "N",
                    "Points of every Nth column and row, 1 to 1024");
 }

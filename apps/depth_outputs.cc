@@ -81,25 +81,26 @@ DepthFiles make_depth_files(const DepthOutputs& outputs, const CloudSource& sour
     const double share = values["known_share"].get<double>();
     files.summaries.push_back(
         values.contains("min_m")
-            ? fmt::format("depths {:.4g} to {:.4g} m, median {:.4g} m, in {:.1f} % of the pixels",
-                          values["min_m"].get<double>(), values["max_m"].get<double>(),
-                          values["median_m"].get<double>(), 100 * share)
-            : "no pixel has a depth");
+            ? fmt::format(
+                  "depths {:.4g} to {:.4g} m, median {:.4g} m, in {:.1f} % of the pixels -> {}",
+                  values["min_m"].get<double>(), values["max_m"].get<double>(),
+                  values["median_m"].get<double>(), 100 * share, outputs.depth)
+            : fmt::format("no pixel has a depth -> {}", outputs.depth));
     report.add_result("depth", std::move(values));
   }
   if (!outputs.cloud.empty()) {
     const PointCloud cloud = point_cloud(source, outputs.options, execution);
     files.cloud = encode_ply(cloud, kCameraFrame);
     report.add_result("cloud", {{"points", cloud.size()}});
-    files.summaries.push_back(fmt::format("{} points", cloud.size()));
+    files.summaries.push_back(fmt::format("{} points -> {}", cloud.size(), outputs.cloud));
   }
   if (!outputs.mesh.empty()) {
     const TriangleMesh mesh = triangle_mesh(source, outputs.options, execution);
     files.mesh = encode_ply(mesh, kCameraFrame);
     report.add_result(
         "mesh", {{"vertices", mesh.vertices.size()}, {"triangles", mesh.triangles.size() / 3}});
-    files.summaries.push_back(
-        fmt::format("{} vertices, {} triangles", mesh.vertices.size(), mesh.triangles.size() / 3));
+    files.summaries.push_back(fmt::format("{} vertices, {} triangles -> {}", mesh.vertices.size(),
+                                          mesh.triangles.size() / 3, outputs.mesh));
   }
   return files;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/calibration_settings.h"
 #include "apps/metric_settings.h"
 #include "engine/error.h"
 #include "engine/io/map_formats.h"
@@ -34,7 +35,7 @@ DepthGeometry::DepthGeometry(const DepthSettings& depth, int width_px, int heigh
   if (depth.calibration.empty()) {
     return;
   }
-  const StereoCalibration cameras = depth.rig.read(depth.calibration);
+  const StereoCalibration cameras = depth.rig.read(depth.calibration, depth.kitti_cameras);
   metres_per_unit_ = depth.outputs.any() ? depth.rig.required_unit_of(cameras)
                                          : depth.rig.unit_of(cameras).value_or(1);
   rectifier_.emplace(cameras, width_px, height_px, depth.rectification);
@@ -54,17 +55,18 @@ void add_depth_settings(Settings& settings, DepthSettings& depth) {
   settings.input_path("calibration", depth.calibration, "FILE",
                       "Cameras, to rectify the pair first if needed, and for depths: OpenCV, "
                       "Middlebury or KITTI file");
-  settings.number("kept-outline", depth.rectification.kept_outline, "SHARE",
-                  "Area of images that are rectified first: 0 only what both cameras see, 1 "
-                  "everything, with black borders");
+  add_kept_outline_setting(settings, depth.rectification);
+  add_kitti_cameras_setting(settings, depth.kitti_cameras);
   add_rig_scale_settings(settings, depth.rig);
   add_depth_output_settings(settings, depth.outputs);
   add_cloud_settings(settings, depth.outputs.options);
   settings.path(
       "depth-resolution", depth.resolution_file, "FILE",
       fmt::format(
-          "Write the distance from each pixel's depth to the next one that can be told from "
-          "it, in metres, or in the calibration's unit where that is not known: {}",
+          "Write the depth resolution, the distance from each pixel's depth to the next that can "
+          "be "
+          "distinguished from it, in metres, or in the calibration's unit where that is not known: "
+          "{}",
           listed_map_formats(MapContent::kConfidence)));
   add_disparity_resolution_setting(settings, depth.step_px);
 }

@@ -17,6 +17,7 @@ struct DepthSettings {
   std::string resolution_file;  ///< map of δZ; empty: none
   DepthOutputs outputs;
   std::string calibration;  ///< of the images, which are rectified first if needed
+  std::optional<KittiCameras> kitti_cameras;
   RigScale rig;
   RectificationOptions rectification;
   std::optional<double> step_px = std::nullopt;  ///< δ; default 0.1, or 1 for whole disparities

@@ -198,6 +198,19 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
        "vantage match left.png right.png -o map.pfm --calibration calib.txt --cloud cloud.ply"});
 }
 
+std::vector<std::string> MatchJob::written_maps() const {
+  std::vector<std::string> files;
+  for (const std::string* file :
+       {&output, &output_right, &confidence, &unmatched, &unmatched_right, &preview,
+        &posterior_mean, &posterior_variance, &cyclopean, &cyclopean_occlusion,
+        &depth.resolution_file}) {
+    if (!file->empty()) {
+      files.push_back(*file);
+    }
+  }
+  return files;
+}
+
 double MatchJob::disparity_resolution_px() const {
   return depth.step_px.value_or(vantage::disparity_resolution_px(match.resolved()));
 }
@@ -231,6 +244,9 @@ void check(const MatchJob& job, const Settings& settings) {
   }
   if (job.depth.calibration.empty()) {
     settings.refuse_idle({"kept-outline"}, "without --calibration");
+    if (job.unrectified.empty()) {
+      settings.refuse_idle({"kitti-cameras"}, "without --calibration");
+    }
   }
   for (const auto& [option, file, content] :
        {std::tuple{"confidence", &job.confidence, "confidences"},

@@ -48,6 +48,8 @@ struct MatchJob {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
+  /// Files with maps, masks and the preview, the map first.
+  [[nodiscard]] std::vector<std::string> written_maps() const;
   [[nodiscard]] bool wants_posterior() const {
     return !posterior_mean.empty() || !posterior_variance.empty();
   }

@@ -22,9 +22,10 @@ void add_parameter_settings(Settings& settings, MatchOptions& options) {
 }
 
 void add_method_settings(Settings& settings, MatchOptions& options) {
-  settings.choice("method", options.method, method_names(),
-                  "A method of the book, for comparison; for photographs use --preset; auto: the "
-                  "preset's, without a preset ssd");
+  settings.choice(
+      "method", options.method, method_names(),
+      "A method of Scharstein's book, for comparison; for photographs use --preset; auto: the "
+      "preset's, without a preset ssd");
   settings.choice(
       "preset", options.preset, preset_names(),
       "Parameters for photographs, shown by --print-config:\nrealtime  0.4 times the time of "

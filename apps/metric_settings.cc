@@ -8,13 +8,14 @@ namespace vantage::apps {
 
 void add_max_depth_setting(Settings& settings, std::optional<double>& max_depth_m) {
   settings.number("max-depth", max_depth_m, "METRES",
-                  "Depths beyond are unknown; auto: no limit, 65.535 in PNG");
+                  "Discard depths beyond this; auto: no limit, 65.535 in PNG");
 }
 
 void add_disparity_resolution_setting(Settings& settings, std::optional<double>& step_px) {
-  settings.number("disparity-resolution", step_px, "PX",
-                  "Difference of disparities that can be told apart, for --depth-resolution; auto: "
-                  "0.1, or 1 with --subpixel none");
+  settings.number(
+      "disparity-resolution", step_px, "PX",
+      "Smallest distinguishable difference of disparities, for --depth-resolution; auto: "
+      "0.1, or 1 with --subpixel none");
 }
 
 void require_disparity_resolution(const std::optional<double>& step_px) {
@@ -26,9 +27,8 @@ void add_cloud_settings(Settings& settings, CloudOptions& options) {
   settings.integer("cloud-step", options.step_px, "N",
                    "Points of every Nth column and row, 1 to 1024");
   settings.number("cloud-min-confidence", options.min_confidence, "C",
-                  "Points have at least this confidence, see --confidence; auto: any");
-  settings.flag("cloud-confidence", options.with_confidence,
-                "Points have a property with their confidence");
+                  "Drop points below this confidence, see --confidence; auto: none");
+  settings.flag("cloud-confidence", options.with_confidence, "Store each point's confidence");
   settings.flag("cloud-filled", options.keeps_filled,
                 "Also points of filled pixels, whose disparity is a guess");
   settings.flag(

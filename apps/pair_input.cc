@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "apps/automatic_disparities.h"
+#include "apps/calibration_settings.h"
 #include "apps/given_maps.h"
+#include "apps/kitti_cameras_choice.h"
 #include "apps/match_settings.h"
 #include "apps/rectification_check.h"
 #include "engine/error.h"
@@ -58,9 +60,8 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
   settings.input_path("calibration", pair.calibration, "FILE",
                       "Cameras, to rectify the pair first if needed: OpenCV, Middlebury or KITTI "
                       "file; given maps belong to rectified images");
-  settings.number(
-      "kept-outline", pair.rectification.kept_outline, "SHARE",
-      "Area of rectified images: 0 only what both cameras see, 1 everything, with black borders");
+  add_kept_outline_setting(settings, pair.rectification);
+  add_kitti_cameras_setting(settings, pair.kitti_cameras);
   add_rectification_check_setting(settings, pair.check_rectification);
 }
 
@@ -84,7 +85,7 @@ void check_pair(const PairInput& pair, const Settings& settings) {
   }
   pair.rectification.validate();
   if (pair.calibration.empty()) {
-    settings.refuse_idle({"kept-outline"}, "without --calibration");
+    settings.refuse_idle({"kept-outline", "kitti-cameras"}, "without --calibration");
   }
 }
 
@@ -106,8 +107,10 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     }
   });
   if (!pair.calibration.empty()) {
-    result.cameras = rectify(read_stereo_calibration(pair.calibration), pair.rectification,
-                             execution, report, result);
+    const std::filesystem::path images[] = {pair.left, pair.right};
+    choose_kitti_cameras(settings, common, pair.calibration, images, pair.kitti_cameras);
+    result.cameras = rectify(read_stereo_calibration(pair.calibration, pair.kitti_cameras),
+                             pair.rectification, execution, report, result);
   }
   if (pair.check_rectification) {
     warn_unless_rectified(settings, common, expects_negative_disparities(pair.match), result.left,

@@ -10,6 +10,7 @@
 #include "apps/settings.h"
 #include "engine/execution.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/synthesis/pair_with_maps.h"
 
@@ -24,6 +25,7 @@ struct PairInput {
   std::string right_disparity;
   std::optional<double> disparity_scale;
   std::string calibration;  ///< file, empty = a rectified pair of which nothing is known
+  std::optional<KittiCameras> kitti_cameras;
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();
   bool check_rectification = true;

@@ -72,18 +72,19 @@ void RigScale::require_given(const std::string& calibration, const std::string& 
   }
 }
 
-StereoCalibration RigScale::read(const std::string& calibration) const {
+StereoCalibration RigScale::read(const std::string& calibration,
+                                 std::optional<KittiCameras> cameras) const {
   if (!images_are_rectified) {
-    return read_stereo_calibration(calibration);
+    return read_stereo_calibration(calibration, cameras);
   }
-  StereoCalibration cameras = read_rectified_calibration(calibration);
-  if (!cameras.is_rectified) {
+  StereoCalibration result = read_rectified_calibration(calibration, cameras);
+  if (!result.is_rectified) {
     throw Error(
         fmt::format("{}: has no cameras of rectified images, expected P1 and P2, or Q, with "
                     "--already-rectified",
                     calibration));
   }
-  return cameras;
+  return result;
 }
 
 std::optional<double> RigScale::unit_of(const StereoCalibration& calibration) const {

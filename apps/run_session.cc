@@ -9,9 +9,11 @@
 #include "apps/automatic_disparities.h"
 #include "apps/frame_step_setting.h"
 #include "apps/interrupt.h"
+#include "apps/kitti_cameras_choice.h"
 #include "apps/rectification_check.h"
 #include "apps/resumed_run.h"
 #include "apps/stream_run.h"
+#include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/io/file_identity.h"
 #include "engine/io/json_text.h"
@@ -158,6 +160,11 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   for (const fs::path& file : session.pairs->files()) {
     files.add_input(file);
   }
+  const int input_frames = session.pairs->input_frames();
+  if (job.frames && job.frames->end > input_frames && !job.common.quiet) {
+    tell("run: warning: --frames {}-{} ends after the input, which has {} frames (0 to {})\n",
+         job.frames->first, job.frames->end - 1, input_frames, input_frames - 1);
+  }
   FramePair first;
   report.timed_file_access("open", [&] {
     if (session.pairs->is_stream()) {
@@ -172,7 +179,10 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   Execution execution(job.common.execution);
   std::optional<StereoCalibration> calibration;
   if (!job.calibration.empty()) {
-    calibration = job.rig.read(job.calibration);
+    choose_kitti_cameras(settings, job.common, job.calibration, session.pairs->files(),
+                         job.kitti_cameras);
+    report.set_settings(reported_settings(settings, job.sequence.match));
+    calibration = job.rig.read(job.calibration, job.kitti_cameras);
   }
   prepare_pairs(job, calibration, job.sequence.is_metric(), first, execution, session);
   if (job.check_rectification) {

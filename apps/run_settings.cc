@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "apps/calibration_settings.h"
 #include "apps/depth_video_settings.h"
 #include "apps/frame_rate_setting.h"
 #include "apps/frame_step_setting.h"
@@ -172,6 +173,7 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
 void add_run_settings(Settings& settings, RunJob& job) {
   settings.take_job_file();
   add_input_settings(settings, job);
+  add_kitti_cameras_setting(settings, job.kitti_cameras);
   add_rectification_check_setting(settings, job.check_rectification);
   add_output_settings(settings, job);
   add_metric_settings(settings, job);
@@ -216,6 +218,9 @@ void complete(RunJob& job, const Settings& settings) {
     settings.refuse_idle({"tuning"}, "with --memory, for which the cost model plans");
   }
   check_sequence(job, settings, job.resume);
+  if (job.kitti_cameras && job.calibration.empty()) {
+    throw UsageError("--kitti-cameras has no effect without --calibration");
+  }
   require_disparity_resolution(job.sequence.disparity_step_px);
   job.common.execution.validate();
   if (job.overwrite && (job.resume || job.force)) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "apps/calibration_settings.h"
 #include "apps/frame_step_setting.h"
 #include "apps/match_settings.h"
 #include "apps/option_groups.h"
@@ -154,9 +155,7 @@ void add_input_settings(Settings& settings, SequenceJob& job) {
       .input_path("calibration", job.calibration, "FILE",
                   "Cameras, to rectify the pairs first: OpenCV, Middlebury or KITTI file")
       .changes_results = false;  // the journal identifies inputs by their content
-  settings.number("kept-outline", job.rectification.kept_outline, "SHARE",
-                  "Area of rectified images: 0 only what both cameras see, 1 everything, with "
-                  "black borders, which are matched like image content");
+  add_kept_outline_setting(settings, job.rectification);
 }
 
 void add_save_setting(Settings& settings, SequenceJob& job) {

@@ -4,8 +4,7 @@
 
 namespace vantage::apps {
 
-/// A hidden folder for files that nobody wants, on the file system that they would be on; it goes
-/// with this object.
+/// A hidden scratch folder on the file system of a path, removed with this object.
 class ThrowAwayFolder {
  public:
   /// In the nearest folder above `path` that is there. Throws Error when it cannot be made.

@@ -59,7 +59,7 @@ class Execution {
   scheduler::ScratchPool scratch_;
 };
 
-/// The execution of whoever names none: one for the whole process, with default options, made at
+/// The default execution: one for the whole process, with default options, made at
 /// the first call and kept until the process ends. Thread rule: any thread.
 Execution& default_execution();
 

@@ -3,7 +3,9 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +78,40 @@ StereoCalibration make_rig(double focal_px, double baseline_metres, const Size& 
   calibration.metres_per_unit = 1;
   calibration.file = "the calibration";
   calibration.validate();
+  return calibration;
+}
+
+StereoCalibration load_calibration(const py::object& path, bool already_rectified,
+                                   const std::optional<std::array<int, 2>>& kitti_cameras,
+                                   const std::vector<py::object>& images) {
+  std::optional<KittiCameras> cameras;
+  if (kitti_cameras) {
+    if (kitti_cameras != std::array{0, 1} && kitti_cameras != std::array{2, 3}) {
+      throw UsageError(fmt::format("kitti_cameras is ({}, {}), expected (0, 1) or (2, 3)",
+                                   (*kitti_cameras)[0], (*kitti_cameras)[1]));
+    }
+    cameras = kitti_cameras == std::array{0, 1} ? KittiCameras::kGrey : KittiCameras::kColour;
+  }
+  apps::RigScale rig;
+  rig.images_are_rectified = already_rectified;
+  const std::string file = path_of(path);
+  StereoCalibration calibration = without_gil([&] { return rig.read(file, cameras); });
+  if (!cameras && calibration.has_other_cameras) {
+    std::vector<std::filesystem::path> paths;
+    for (const py::object& image : images) {
+      paths.emplace_back(path_of(image));
+    }
+    if (const std::optional<KittiCameras> named = kitti_cameras_of(paths)) {
+      return without_gil([&] { return rig.read(file, named); });
+    }
+    const std::string text = fmt::format(
+        "{}: has KITTI's cameras 0 to 3, and 0 and 1 (grey) are used; kitti_cameras=(2, 3) of "
+        "Calibration.load() for images of 2 and 3 (colour)",
+        file);
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) {
+      throw py::error_already_set();
+    }
+  }
   return calibration;
 }
 
@@ -189,7 +225,9 @@ constexpr const char* kCalibrationText =
     "cameras.";
 constexpr const char* kLoadText =
     "Reads a file of OpenCV, Middlebury or KITTI. Raises Error.\n\nalready_rectified: the images "
-    "were rectified with it: its P1 and P2, or Q, instead of M1 and M2.";
+    "were rectified with it: its P1 and P2, or Q, instead of M1 and M2.\nkitti_cameras: (0, 1), "
+    "grey, or (2, 3), colour, of a KITTI file; None: those of the folders\n"
+    "that `images` are in (image_2, image_3 ...), else (0, 1), with a warning if it has both.";
 constexpr const char* kFocalLengthText =
     "Rectified cameras, in metres, of their focal length and distance.\n\ndoffs_px: cx of the "
     "right "
@@ -207,8 +245,7 @@ std::optional<StereoCalibration> calibration_from(const py::object& object) {
   if (py::isinstance<StereoCalibration>(object)) {
     return object.cast<StereoCalibration>();
   }
-  const std::string file = path_of(object);
-  return without_gil([&] { return read_stereo_calibration(file); });
+  return load_calibration(object, false, std::nullopt, {});
 }
 
 void bind_rectification(py::module_& module) {
@@ -219,15 +256,9 @@ void bind_rectification(py::module_& module) {
            py::arg("T") = std::optional<Eigen::Vector3d>(), py::kw_only(),
            py::arg("image_size") = Size(), py::arg("rectified") = false,
            py::arg("metres_per_unit") = std::optional<double>())
-      .def_static(
-          "load",
-          [](const py::object& path, bool already_rectified) {
-            apps::RigScale rig;
-            rig.images_are_rectified = already_rectified;
-            const std::string file = path_of(path);
-            return without_gil([&] { return rig.read(file); });
-          },
-          py::arg("path"), py::kw_only(), py::arg("already_rectified") = false, kLoadText)
+      .def_static("load", &load_calibration, py::arg("path"), py::kw_only(),
+                  py::arg("already_rectified") = false, py::arg("kitti_cameras") = py::none(),
+                  py::arg("images") = std::vector<py::object>(), kLoadText)
       .def_static("from_focal_length", &make_rig, py::arg("focal_px"), py::arg("baseline_metres"),
                   py::kw_only(), py::arg("image_size") = Size(), py::arg("doffs_px") = 0.0,
                   py::arg("principal_point_px") = std::optional<std::pair<double, double>>(),

@@ -34,6 +34,14 @@ class CheckDocumentsTest(PlantedTreeTest):
             with self.subTest(name=name):
                 self.expect_violation(name, text, f"{section}, expected a section")
 
+    def test_long_lines_of_prose(self):
+        long = "word " * 21
+        self.expect_violation("docs/GUIDE.md", f"# Guide\n\n{long}\n", "docs/GUIDE.md:3: 105 columns")
+        for name, text in [("docs/GUIDE.md", f"| {long} |\n"), ("perf/log/a.md", long),
+                           ("docs/GUIDE.md", f"```sh\n{long}\n```\n")]:
+            with self.subTest(name=name, text=text):
+                self.assertEqual(self.check({**CLEAN_TREE, name: text}).returncode, 0)
+
     def test_a_section_that_is_removed(self):
         result = self.check({**CLEAN_TREE,
                              "docs/EQUATIONS.md": EQUATIONS.replace("### 1.2 Borders", "Borders")})

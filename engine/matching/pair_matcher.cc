@@ -1,5 +1,7 @@
 #include "engine/matching/pair_matcher.h"
 
+#include <utility>
+
 #include "engine/matching/match_inputs.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/vertical_range.h"
@@ -59,6 +61,17 @@ std::shared_ptr<const PairMatcher::Ready> PairMatcher::ready_for(
     ready_ = std::make_shared<const Ready>(options, execution_);
   }
   return ready_;
+}
+
+MatchOptions PairMatcher::match(const Photograph& left, const Photograph& right, MatchedMap& map,
+                                MatchReport* report) const {
+  const Side side = options_.reference;
+  DisparityMaps maps;
+  std::swap(maps.of(side), map);
+  MatchOptions used = match(
+      left, right, {.left = side == Side::kLeft, .right = side == Side::kRight}, maps, report);
+  std::swap(maps.of(side), map);
+  return used;
 }
 
 }  // namespace vantage

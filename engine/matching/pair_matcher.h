@@ -38,6 +38,10 @@ class PairMatcher {
                              const MatchRequest& request, DisparityMaps& maps,
                              MatchReport* report = nullptr) const;
 
+  /// The same for the map of options().reference alone, whose memory is reused.
+  MatchOptions match(const Photograph& left, const Photograph& right, MatchedMap& map,
+                     MatchReport* report = nullptr) const;
+
   [[nodiscard]] const MatchOptions& options() const { return options_; }
 
  private:

@@ -46,7 +46,7 @@ bool may_be_cut(const MatchesAtEnds& matches, const MatchOptions& options, bool 
 CutRange look_beyond(const MatchesAtEnds& matches, const Photograph& left, const Photograph& right,
                      const MatchOptions& options, Execution& execution);
 
-/// "disparities above 49 seem to be left out: 11.1 % of the matches lie at that end of the search".
+/// "disparities above 49 seem to be left out: 11 % of the matches lie at that end".
 std::string to_text(const CutRange& cut, DisparityRange range);
 
 }  // namespace vantage

@@ -72,7 +72,7 @@ Advice about_preset(const Steps& steps, double maps_s, const ProfiledChoices& ch
   }
   if (!choices.preset) {
     return {steps.share(maps_s) * (1 - kRealtimeOfBalanced),
-            fmt::format("--preset realtime instead of a method of the book: maps take {}.",
+            fmt::format("--preset realtime instead of a method of Scharstein's book: maps take {}.",
                         steps.text(maps_s))};
   }
   const double of_this = realtime_of(*choices.preset);

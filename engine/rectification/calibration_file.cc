@@ -98,6 +98,14 @@ int whole_pixels(double value) {
 /// Which cameras are wanted of a file that has those of photographs and of rectified images.
 enum class CameraChoice { kPhotographs, kRectified };
 
+bool has_grey_cameras(const CalibrationFile& file) {
+  return file.find({"P0", "P_rect_00"}) != nullptr;
+}
+
+bool has_colour_cameras(const CalibrationFile& file) {
+  return file.find({"P2", "P_rect_02"}) != nullptr && file.find({"P3", "P_rect_03"}) != nullptr;
+}
+
 /// Two cameras of a rig, each given as P = K · (I | t).
 StereoCalibration from_projections(const Matrix34& left, const Matrix34& right) {
   StereoCalibration calibration{.is_rectified = true};
@@ -203,15 +211,17 @@ StereoCalibration from_middlebury(const CalibrationFile& file) {
   return calibration;
 }
 
-StereoCalibration from_kitti(const CalibrationFile& file) {
+StereoCalibration from_kitti(const CalibrationFile& file, std::optional<KittiCameras> cameras) {
   const auto projection = [&](std::string_view name, std::string_view other_name) -> Matrix34 {
     return Eigen::Map<const Matrix34>(file.values({name, other_name}, 3, 4).data());
   };
-  const bool is_grey = file.find({"P0", "P_rect_00"}) != nullptr;
-  StereoCalibration calibration =
-      is_grey ? from_projections(projection("P0", "P_rect_00"), projection("P1", "P_rect_01"))
-              : from_projections(projection("P2", "P_rect_02"), projection("P3", "P_rect_03"));
+  const bool is_grey = cameras ? cameras == KittiCameras::kGrey : has_grey_cameras(file);
+  const Matrix34 left = is_grey ? projection("P0", "P_rect_00") : projection("P2", "P_rect_02");
+  const Matrix34 right = is_grey ? projection("P1", "P_rect_01") : projection("P3", "P_rect_03");
+  StereoCalibration calibration = from_projections(left, right);
   calibration.metres_per_unit = 1;
+  calibration.kitti_cameras = is_grey ? KittiCameras::kGrey : KittiCameras::kColour;
+  calibration.has_other_cameras = has_grey_cameras(file) && has_colour_cameras(file);
   calibration.format = is_grey ? "KITTI, cameras 0 and 1" : "KITTI, cameras 2 and 3";
   const char* size_name = is_grey ? "S_rect_00" : "S_rect_02";
   if (file.find({size_name}) != nullptr) {
@@ -235,7 +245,8 @@ CalibrationEntries nameless_projections(std::string_view text) {
   return entries;
 }
 
-StereoCalibration parse(std::string_view text, CameraChoice choice) {
+StereoCalibration parse(std::string_view text, CameraChoice choice,
+                        std::optional<KittiCameras> cameras) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) {
     text.remove_prefix(kByteOrderMark.size());
@@ -248,7 +259,7 @@ StereoCalibration parse(std::string_view text, CameraChoice choice) {
     return from_middlebury(CalibrationFile(std::move(entries)));
   }
   if (CalibrationEntries entries = nameless_projections(text); !entries.empty()) {
-    return from_kitti(CalibrationFile(std::move(entries)));
+    return from_kitti(CalibrationFile(std::move(entries)), cameras);
   }
   CalibrationEntries entries = yaml_entries(text);
   // OpenCV numbers its cameras from 1, KITTI from 0.
@@ -259,7 +270,7 @@ StereoCalibration parse(std::string_view text, CameraChoice choice) {
   }
   for (const char* name : {"P0", "P1", "P2", "P3", "P_rect_00", "P_rect_02"}) {
     if (entries.contains(name) && !entries.contains("R") && !entries.contains("T")) {
-      return from_kitti(CalibrationFile(std::move(entries)));
+      return from_kitti(CalibrationFile(std::move(entries)), cameras);
     }
   }
   for (const char* name : {"M1", "K1", "cameraMatrix1", "camera_matrix_1", "R", "T"}) {
@@ -272,7 +283,8 @@ StereoCalibration parse(std::string_view text, CameraChoice choice) {
       "or KITTI");
 }
 
-StereoCalibration read_calibration(const std::filesystem::path& path, CameraChoice choice) {
+StereoCalibration read_calibration(const std::filesystem::path& path, CameraChoice choice,
+                                   std::optional<KittiCameras> cameras) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   try {
     if (bytes.size() > kMaxBytes) {
@@ -280,7 +292,11 @@ StereoCalibration read_calibration(const std::filesystem::path& path, CameraChoi
           fmt::format("it has {} bytes, expected a text of at most {}", bytes.size(), kMaxBytes));
     }
     StereoCalibration calibration =
-        parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, choice);
+        parse({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, choice, cameras);
+    if (cameras && !calibration.kitti_cameras) {
+      throw Error(fmt::format("has format {}, expected KITTI: only its cameras are selected",
+                              calibration.format));
+    }
     calibration.validate();
     calibration.file = path.string();
     return calibration;
@@ -291,8 +307,9 @@ StereoCalibration read_calibration(const std::filesystem::path& path, CameraChoi
 
 }  // namespace
 
-StereoCalibration read_stereo_calibration(const std::filesystem::path& path) {
-  return read_calibration(path, CameraChoice::kPhotographs);
+StereoCalibration read_stereo_calibration(const std::filesystem::path& path,
+                                          std::optional<KittiCameras> cameras) {
+  return read_calibration(path, CameraChoice::kPhotographs, cameras);
 }
 
 StereoCalibration calibration_of_depth_matrix(const Eigen::Matrix4d& q) {
@@ -312,8 +329,9 @@ StereoCalibration calibration_of_depth_matrix(const Eigen::Matrix4d& q) {
   return calibration;
 }
 
-StereoCalibration read_rectified_calibration(const std::filesystem::path& path) {
-  return read_calibration(path, CameraChoice::kRectified);
+StereoCalibration read_rectified_calibration(const std::filesystem::path& path,
+                                             std::optional<KittiCameras> cameras) {
+  return read_calibration(path, CameraChoice::kRectified, cameras);
 }
 
 }  // namespace vantage

@@ -7,6 +7,7 @@
 
 #include "engine/image/side.h"
 #include "engine/rectification/camera.h"
+#include "engine/rectification/kitti_cameras.h"
 
 namespace vantage {
 
@@ -31,6 +32,9 @@ struct StereoCalibration {
   bool has_scale = true;
   /// The images are rectified: rows of both images correspond.
   bool is_rectified = false;
+  std::optional<KittiCameras> kitti_cameras =
+      std::nullopt;                    ///< of a file of KITTI: which these are
+  bool has_other_cameras = false;      ///< the file has both pairs of KITTI's
   std::string format = "calibration";  ///< for messages: "KITTI, cameras 0 and 1"
   std::string file = {};               ///< for messages: source file, if any
 
@@ -58,13 +62,15 @@ struct StereoCalibration {
 ///  P1 and P2 (3×4), or else of Q (4×4). metres_per_unit, if in the file; 0 means no scale.
 ///  - Middlebury calib.txt: cam0, cam1, baseline, width, height, and doffs, which must agree with
 ///  the cameras to 0.1 px. Rectified, in millimetres.
-///  - KITTI calib.txt: P0 and P1 (grey) if present, else P2 and P3 (colour), or the same under the
-///  names P_rect_00 …, or two or four lines of 12 numbers without names. Rectified, in metres.
+///  - KITTI calib.txt: P0 and P1 (grey) or P2 and P3 (colour), or the same under the names
+///  P_rect_00 …, or two or four lines of 12 numbers without names. Rectified, in metres. `cameras`
+///  selects the pair; empty: the grey one if the file has it. For other formats it must be empty.
 /// Fisheye models are refused if the file names them (fisheye_model of OpenCV's samples,
 /// distortion_model, camera_model or model); their four coefficients alone look like those of other
 /// lenses. The result is valid. Throws Error of one line naming the file for anything it cannot
 /// read. Thread rule: may be called concurrently.
-StereoCalibration read_stereo_calibration(const std::filesystem::path& path);
+StereoCalibration read_stereo_calibration(const std::filesystem::path& path,
+                                          std::optional<KittiCameras> cameras = std::nullopt);
 
 /// The rectified cameras of OpenCV's matrix Q: (X, Y, Z, 1) ~ Q · (x, y, d, 1), with the rows
 /// (1 0 0 -cx), (0 a 0 -a·cy), (0 0 0 f), (0 0 1/B doffs/B); a is 1 in Q of OpenCV, else fx / fy.
@@ -74,6 +80,7 @@ StereoCalibration calibration_of_depth_matrix(const Eigen::Matrix4d& q);
 /// read_stereo_calibration() for images that were rectified with the calibration of a file: of an
 /// OpenCV file with P1 and P2, or with Q, the cameras of the rectified images, although it has M1
 /// and M2 too.
-StereoCalibration read_rectified_calibration(const std::filesystem::path& path);
+StereoCalibration read_rectified_calibration(const std::filesystem::path& path,
+                                             std::optional<KittiCameras> cameras = std::nullopt);
 
 }  // namespace vantage

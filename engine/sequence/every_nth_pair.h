@@ -23,6 +23,7 @@ class EveryNthPair final : public PairSource {
   [[nodiscard]] int index_of(int pair) const override {
     return source_->index_of(source_index(pair));
   }
+  [[nodiscard]] int input_frames() const override { return source_->input_frames(); }
   [[nodiscard]] int frames_kept() const override { return source_->frames_kept(); }
   [[nodiscard]] std::string describe(int index) const override {
     return source_->describe(source_index(index));

@@ -126,7 +126,7 @@ void PairSourceOptions::validate() const {
     throw UsageError("more is given, expected it with left and right only");
   }
   if (!stereo.empty() && !packing) {
-    throw UsageError("stereo is given without packing");
+    throw UsageError("stereo needs packing, such as sbsl");
   }
   if (packing && stereo.empty()) {
     throw UsageError("packing is given without stereo");

@@ -116,6 +116,8 @@ class PairSource {
   [[nodiscard]] virtual FrameRange pairs_of(FrameRange input_frames) const { return input_frames; }
   /// FramePair::index of a pair.
   [[nodiscard]] virtual int index_of(int pair) const { return pair; }
+  /// Number of frames that pairs_of() counts. Of a stream an upper bound.
+  [[nodiscard]] virtual int input_frames() const { return pair_count(); }
   /// Number of decoded frames, no larger than photographs, that the source itself keeps in memory.
   [[nodiscard]] virtual int frames_kept() const { return 0; }
   /// "left/000012.png, right/000012.png" or "film.mp4 frame 12".

@@ -216,7 +216,7 @@ void check_films(const SequenceOptions& options) {
         "on");
   }
   if (!is_grey(options.depth_coding)) {
-    throw UsageError("depth-codec is one of colours, expected a grey one");
+    throw UsageError("depth-codec is h264, expected ffv1-16, ffv1-10, hevc-10 or prores-10");
   }
   const PreviewRange given = options.depth_scale.given;
   if (!(std::isfinite(given.min_px) && std::isfinite(given.max_px) &&

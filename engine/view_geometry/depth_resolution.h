@@ -33,8 +33,8 @@ struct DisparityQuantiles {
 /// Empty if no disparity is known.
 std::optional<DisparityQuantiles> disparity_quantiles(ImageView<const float> disparity_px);
 
-/// depth_resolution() for each pixel of a map, NaN = unknown or infinite. Resizes `resolution`. Identical for
-/// any `execution`.
+/// depth_resolution() for each pixel of a map, NaN = unknown or infinite. Resizes `resolution`.
+/// Identical for any `execution`.
 void depth_resolution_map(ImageView<const float> disparity_px, const DepthScale& scale,
                           double step_px, Execution& execution, Image<float>& resolution);
 

@@ -47,6 +47,20 @@ def test_view_of_a_camera(scene, pair, tmp_path):
         vantage.synthesize(*pair, pose, **RANGE)
 
 
+def test_cameras_of_kitti(tmp_path):
+    rows = "70 0 35 {} 0 70 26 0 0 0 1 0"
+    (tmp_path / "calib.txt").write_text(
+        "".join(f"P{i}: {rows.format(x)}\n" for i, x in enumerate([0, -35, 7, -35])))
+    with pytest.warns(UserWarning, match=r"0 and 1 \(grey\) are used; kitti_cameras=\(2, 3\)"):
+        assert vantage.Calibration.load(tmp_path / "calib.txt").baseline == pytest.approx(0.5)
+    colour = vantage.Calibration.load(tmp_path / "calib.txt", kitti_cameras=(2, 3))
+    assert colour.baseline == pytest.approx(0.6)
+    with pytest.raises(ValueError, match=r"kitti_cameras is \(1, 2\), expected"):
+        vantage.Calibration.load(tmp_path / "calib.txt", kitti_cameras=(1, 2))
+    of_folders = vantage.Calibration.load(tmp_path / "calib.txt", images=["image_2/0.png"])
+    assert of_folders.baseline == colour.baseline
+
+
 def test_views_of_bad_input(pair):
     with pytest.raises(ValueError, match=r"view is at 99, 0 baselines, expected both within -16"):
         vantage.synthesize(*pair, 99)

@@ -214,11 +214,11 @@ def depth(disparity, calibration=None, **options):
 
 
 def depth_resolution(disparity, calibration=None, **options):
-    """Distance from each depth to the next one that can be told from it: float32, HxW, in metres,
+    """Distance from each depth to the next distinguishable one: float32, HxW, in metres,
     or in the calibration's unit where its length is not known.
 
-    options: disparity_resolution, the difference of disparities that can be told apart (default 0.1
-    pixels), and those of depth() but max_depth.
+    options: disparity_resolution, the smallest distinguishable difference of disparities (default
+    0.1 pixels), and those of depth() but max_depth.
     """
     return _vantage.depth_resolution(disparity, _calibration_of(calibration), options)
 
@@ -322,7 +322,7 @@ class Sequence:
         if isinstance(frames, str):
             options["frames"] = frames
         self._native = _vantage.Sequence(
-            _calibration_of(calibration),
+            _calibration_of(calibration, [side for side in (left, right) if side is not None]),
             {"left": left, "right": right, "preset": preset, "disparities": disparities,
              **options})
         self._frames = self._chosen(frames)
@@ -412,7 +412,7 @@ def colours(disparity, limits=None):
     return _vantage.colours(disparity, limits)
 
 
-def _calibration_of(calibration):
+def _calibration_of(calibration, images=()):
     if calibration is None or isinstance(calibration, Calibration):
         return calibration
-    return Calibration.load(calibration)
+    return Calibration.load(calibration, images=images)

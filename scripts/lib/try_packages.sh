@@ -66,7 +66,7 @@ fi
 
 apt_inside install '/packages/libvantage-dev_*.deb' g++ cmake make
 mkdir "$root/consumer"
-cp tests/consumer/* "$root/consumer/"
+cp tests/consumer/CMakeLists.txt tests/consumer/main.cc "$root/consumer/"
 inside 'cmake -S /consumer -B /tmp/consumer >/dev/null && cmake --build /tmp/consumer >/dev/null &&
   /tmp/consumer/consumer >/dev/null'
 echo "== a C++ program builds with libvantage-dev and runs"

@@ -26,6 +26,16 @@ TEST_F(MatchCommand, FindsTheTruth) {
       0.05);
 }
 
+TEST_F(MatchCommand, NamesItsFilesAndTheColoursOfThePreview) {
+  const std::string map = folder_ / "map.pfm";
+  const std::string mask = folder_ / "mask.png";
+  const std::string preview = folder_ / "view.png";
+  const ProcessResult result = match(map, {"--unmatched", mask, "--preview", preview});
+  EXPECT_THAT(result.err, HasSubstr(left_ + " -> " + map + ", " + mask + ", " + preview + "\n"));
+  EXPECT_THAT(result.err,
+              HasSubstr(preview + ": blue is 0 px (far), red 9 px (near), black unknown\n"));
+}
+
 TEST_F(MatchCommand, WritesEverythingAskedFor) {
   const ProcessResult result =
       match(folder_ / "l.pfm",
@@ -236,6 +246,19 @@ TEST_F(InputMatchCommand, WrongUsageIsOneLineAndExit2) {
     EXPECT_THAT(result.err, HasSubstr(misuse.says));
   }
   EXPECT_EQ(files_below(folder_.path()), before);
+}
+
+TEST(InputCommandLine, WordsOfOtherProgramsAreAnsweredWithWhatThereIs) {
+  const auto answer = [](const std::vector<std::string>& arguments) {
+    const ProcessResult result = run_vantage(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    return result.err;
+  };
+  EXPECT_THAT(answer({"run", "--stride", "2"}), HasSubstr("--every N takes every Nth pair"));
+  EXPECT_THAT(answer({"run", "--depth", "z.png"}), HasSubstr("--save depth,cloud,mesh writes"));
+  EXPECT_THAT(answer({"match", "--point-cloud", "c.ply"}), HasSubstr("--cloud FILE.ply points"));
+  EXPECT_THAT(answer({"synth", "--depth", "z.png"}), HasSubstr("'vantage match --depth FILE'"));
+  EXPECT_THAT(answer({"pointcloud"}), HasSubstr("'vantage reproject' those of a disparity map"));
 }
 
 TEST(InputCommandLine, UnknownCommandsAndHelp) {

@@ -19,6 +19,7 @@ using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr int kFrames = 6;
@@ -290,7 +291,7 @@ TEST_F(InputRunCommand, WrongUsageIsOneLineAndExit2) {
       {{"--save", "preview", "--format", "npy"}, "--format has no effect where --save has no"},
       {{"--gamma", "1"}, "--gamma has no effect where --save has no views"},
       {{"--temporal-threshold", "5"}, "--temporal-threshold has no effect without"},
-      {{"--stride", "2"}, "'--stride': a glob such as"},
+      {{"--stride", "2"}, "'--stride': --every N takes every Nth pair"},
       {{"--step", "2"}, "step"},
       {{"--stereo", "x.mp4"}, "stereo"},
       {{"-p", "2"}, "unknown option '-p'; 'vantage run --help-all' lists all"},
@@ -414,6 +415,13 @@ TEST_F(RunCommand, ADryRunTellsThePlanAndWritesNothing) {
   const ProcessResult beyond = run(folder_ / "out", {"--frames", "6-9"});
   EXPECT_EQ(beyond.exit_code, 1);
   EXPECT_THAT(beyond.err, HasSubstr("--frames starts at 6 but the input has 6 frames"));
+  const ProcessResult partly = run(folder_ / "partly", {"--frames", "4-9", "--dry-run"});
+  EXPECT_EQ(partly.exit_code, 0) << partly.err;
+  EXPECT_THAT(partly.err, HasSubstr("run: warning: --frames 4-9 ends after the input, which has 6 "
+                                    "frames (0 to 5)\n"));
+  const ProcessResult every =
+      run(folder_ / "every", {"--frames", "0-5", "--every", "4", "--dry-run"});
+  EXPECT_THAT(every.err, Not(HasSubstr("warning: --frames")));
 }
 
 TEST_F(InputRunCommand, JobFilesHoldEverything) {

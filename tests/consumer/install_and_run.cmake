@@ -1,5 +1,5 @@
 # Run with cmake -P: installs the build at VANTAGE_BUILD_DIR into WORK_DIR/prefix, configures and
-# builds CONSUMER_SOURCE_DIR against it, and runs the program. SANITIZE is the -fsanitize= value the
+# builds CONSUMER_SOURCE_DIR against it, and runs the program; compiles each header for users alone. SANITIZE is the -fsanitize= value the
 # libraries were built with, which whoever links them has to repeat.
 function(step name)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output
@@ -19,21 +19,25 @@ if(SANITIZE)
   set(flags "-fsanitize=${SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all")
 endif()
 
-# The headers for users, each of which has to compile alone. A sanitizer sees nothing more there.
-set(headers "")
+function(build name source_dir)
+  step("configure ${name}" ${CMAKE_COMMAND} -S ${source_dir} -B ${WORK_DIR}/${name} -G ${GENERATOR}
+    -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix
+    -D CMAKE_BUILD_TYPE=${BUILD_TYPE}
+    -D CMAKE_CXX_COMPILER=${CXX_COMPILER}
+    -D CMAKE_CXX_FLAGS=${flags}
+    ${ARGN})
+  step("build ${name}" ${CMAKE_COMMAND} --build ${WORK_DIR}/${name})
+endfunction()
+
+step("install" ${CMAKE_COMMAND} --install ${VANTAGE_BUILD_DIR} --prefix ${WORK_DIR}/prefix)
+build(consumer ${CONSUMER_SOURCE_DIR})
+step("run the program" ${WORK_DIR}/consumer/consumer)
+step("run the installed vantage" ${WORK_DIR}/prefix/bin/vantage info)
+
+# A sanitizer sees nothing more in the headers alone.
 if(NOT SANITIZE)
   file(STRINGS ${CONSUMER_SOURCE_DIR}/../../engine/vantage.h headers REGEX "^#include \"")
   list(TRANSFORM headers REPLACE "^#include \"(.+)\"" "\\1")
   list(JOIN headers " " headers)
+  build(headers ${CONSUMER_SOURCE_DIR}/headers "-DHEADERS=${headers}")
 endif()
-
-step("install" ${CMAKE_COMMAND} --install ${VANTAGE_BUILD_DIR} --prefix ${WORK_DIR}/prefix)
-step("configure" ${CMAKE_COMMAND} -S ${CONSUMER_SOURCE_DIR} -B ${WORK_DIR}/build -G ${GENERATOR}
-  -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix
-  -D CMAKE_BUILD_TYPE=${BUILD_TYPE}
-  -D CMAKE_CXX_COMPILER=${CXX_COMPILER}
-  -D CMAKE_CXX_FLAGS=${flags}
-  "-DHEADERS=${headers}")
-step("build" ${CMAKE_COMMAND} --build ${WORK_DIR}/build)
-step("run the program" ${WORK_DIR}/build/consumer)
-step("run the installed vantage" ${WORK_DIR}/prefix/bin/vantage info)

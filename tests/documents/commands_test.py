@@ -4,8 +4,9 @@
 usage: commands_test.py VANTAGE [--only DOCUMENT] [--verbose]
 
 Blocks of a document run in order in one folder, which starts with the inputs that the documents
-name (small generated scenes); `results` of an earlier block is removed unless a block continues it. A
-block after the comment `<!-- not run: REASON -->` is left out.
+name (small generated scenes). Recipes are typed one after the other; of other documents a reader picks
+a section, so `results` of earlier sections is removed. A block after the comment
+`<!-- not run: REASON -->` is left out.
 Prints each block that fails, with its place, and exits 1 when one does.
 """
 import argparse
@@ -14,10 +15,12 @@ import os
 import pathlib
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 import time
+import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path += [str(ROOT / "tests/depths"), str(ROOT / "tests/asp")]
@@ -31,13 +34,13 @@ NOT_RUN = re.compile(r"<!-- not run: .+ -->")
 
 
 def shell_blocks(text):
-    """Pairs of the line number and the text of each shell block that is to be run."""
-    blocks, block, start, kept, before = [], None, 0, True, ""
+    """Line number, text and number of the section of each shell block that is to be run."""
+    blocks, block, start, kept, before, section = [], None, 0, True, "", 0
     for number, line in enumerate(text.splitlines(), 1):
         fence = FENCE.match(line)
         if block is not None and line.startswith("```"):
             if kept:
-                blocks.append((start, "\n".join(block)))
+                blocks.append((start, "\n".join(block), section))
             block = None
         elif block is not None:
             block.append(line)
@@ -46,16 +49,17 @@ def shell_blocks(text):
         elif fence:
             block, kept = [], False
         elif line.strip():
+            section += line.startswith("#")
             before = line
     return blocks
 
 
-CONTINUES_A_RUN = re.compile(r"--resume|vantage (verify|merge|profile)")
+TYPED_IN_ORDER = {"docs/RECIPES.md"}
 
 # Name in the documents → generated file.
 COPIES = {
     "video.mp4": "film/stereo.mp4", "film.mp4": "film/stereo.mp4", "film.mkv": "film/stereo.mp4",
-    "truth.pfm": "left-disparity.pfm", "visible.png": "left-occluded.png",
+    "truth.pfm": "left-disparity.pfm",
     "photograph.png": "row/view-1.png",
     "first.png": "row/view-0.png", "second.png": "row/view-1.png", "third.png": "row/view-2.png",
     "upper.png": "row/view-0.png", "lower.png": "row/view-0,1.png", "a.png": "left.png", "b.png": "right.png",
@@ -77,6 +81,28 @@ def rig_file(calib):
             entry("D1", 1, 5, "0., 0., 0., 0., 0.") + entry("D2", 1, 5, "0., 0., 0., 0., 0.") +
             entry("R", 3, 3, "1., 0., 0., 0., 1., 0., 0., 0., 1.") +
             entry("T", 3, 1, f"{-float(values['baseline'])}, 0., 0."))
+
+
+def kitti_file(calib):
+    """KITTI's calib_cam_to_cam.txt of the same rig; the grey cameras are a little farther apart."""
+    values = dict(line.split("=") for line in calib.splitlines())
+    focal, _, cx, _, _, cy = [float(n) for n in re.findall(r"[-.\d]+", values["cam0"])[:6]]
+    text = "calib_time: 09-Jan-2012 13:57:47\n"
+    for camera, baseline_m in enumerate([0, 0.54, 0, 0.53]):
+        text += (f"P_rect_0{camera}: {focal} 0 {cx} {-focal * baseline_m} "
+                 f"0 {focal} {cy} 0 0 0 1 0\n")
+    return text
+
+
+def write_grey_png(path, rows):
+    """An 8-bit PNG of one channel."""
+    def chunk(name, data):
+        return (struct.pack(">I", len(data)) + name + data +
+                struct.pack(">I", zlib.crc32(name + data)))
+    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0)
+    pixels = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", pixels) +
+                     chunk(b"IEND", b""))
 
 
 class Inputs:
@@ -103,7 +129,12 @@ class Inputs:
             write_tiff(folder / f"tile-{side}.tif", rows)
         (folder / "poses.txt").write_text(  # KITTI's: each frame half a metre ahead
             "".join(f"1 0 0 0 0 1 0 0 0 0 1 {0.5 * frame}\n" for frame in range(6)))
-        (folder / "rig.yml").write_text(rig_file((folder / "calib.txt").read_text()))
+        calib = (folder / "calib.txt").read_text()
+        (folder / "rig.yml").write_text(rig_file(calib))
+        (folder / "training/calib_cam_to_cam").mkdir()
+        (folder / "training/calib_cam_to_cam/000000.txt").write_text(kitti_file(calib))
+        occluded = read_png(folder / "left-occluded.png")
+        write_grey_png(folder / "visible.png", [[255 - pixel[0] for pixel in row] for row in occluded])
 
     def vantage(self, words):
         subprocess.run([self.program, *words.split(), "--quiet"], cwd=self.folder, check=True)
@@ -116,9 +147,11 @@ def run_document(program, document, inputs, work, verbose):
     environment = dict(os.environ, PATH=f"{pathlib.Path(program).parent}:{os.environ['PATH']}",
                        TERM="dumb")
     failures = []
-    for line, block in shell_blocks((ROOT / document).read_text()):
-        if not CONTINUES_A_RUN.search(block):
+    latest = 0
+    for line, block, section in shell_blocks((ROOT / document).read_text()):
+        if section != latest and document not in TYPED_IN_ORDER:
             shutil.rmtree(folder / "results", ignore_errors=True)
+        latest = section
         start = time.monotonic()
         result = subprocess.run(["bash", "-euo", "pipefail", "-c", block], cwd=folder, text=True,
                                 env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

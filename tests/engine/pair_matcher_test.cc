@@ -144,5 +144,23 @@ TEST(PairMatcherTest, FindsTheRangeOfEachPair) {
   }
 }
 
+TEST(PairMatcherTest, WithoutARequestTheMapIsThatOfTheReference) {
+  const std::vector<std::uint8_t> left = colours<std::uint8_t>(0, 1, 255);
+  const std::vector<std::uint8_t> right = colours<std::uint8_t>(4, 1, 255);
+  const Photograph left_image = photograph_of(buffer_of(left, 1));
+  const Photograph right_image = photograph_of(buffer_of(right, 1));
+  MatchOptions options = options_of(MatchPreset::kFast);
+  DisparityMaps both;
+  PairMatcher(options).match(left_image, right_image, {}, both);
+  MatchedMap map;
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    options.reference = side;
+    PairMatcher(options).match(left_image, right_image, map);
+    EXPECT_TRUE(test::identical(map.disparity_px, both.of(side).disparity_px));
+    EXPECT_TRUE(test::identical(map.unmatched, both.of(side).unmatched));
+  }
+  EXPECT_FALSE(test::identical(map.disparity_px, both.left.disparity_px));
+}
+
 }  // namespace pair_matcher_test
 }  // namespace vantage

@@ -511,7 +511,7 @@ TEST(PairSource, OptionsAreChecked) {
   refuse(both, "several kinds of input are given");
   PairSourceOptions packed = packed_in("s", {});
   packed.packing.reset();
-  refuse(packed, "stereo is given without packing");
+  refuse(packed, "stereo needs packing, such as sbsl");
   PairSourceOptions not_packed = two_cameras("l", "r");
   not_packed.packing = StereoPacking{};
   refuse(not_packed, "packing is given without stereo");

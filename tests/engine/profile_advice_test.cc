@@ -60,7 +60,7 @@ TEST(ProfileAdvice, OnlyWhatTheCommandCouldDoIsSaid) {
       profile_advice(profile, kSteps, {.preset = MatchPreset::kRealtime, .candidates = 256}),
       ElementsAre(HasSubstr("256 candidates are searched in 650 ms")));
   EXPECT_THAT(profile_advice(profile, kSteps, {.preset = {}, .candidates = 32}),
-              ElementsAre(HasSubstr("--preset realtime instead of a method of the book")));
+              ElementsAre(HasSubstr("--preset realtime instead of a method of Scharstein's book")));
   // What takes less than a twentieth is not worth a word.
   EXPECT_THAT(profile_advice(profile, {{"check", 0.04}, {"write", 0.96}},
                              {.preset = MatchPreset::kRealtime, .checks_rows = true}),

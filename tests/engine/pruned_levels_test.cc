@@ -470,8 +470,8 @@ TEST(PrunedMatching, IsRefusedWhereItHasNoMeaning) {
             "candidate-blocks is 2, expected 0 with a single level: candidates are chosen by the "
             "winners of a coarser level");
   EXPECT_EQ(message([](MethodOverrides& p) { p.aggregation = Aggregation::kMembrane; }),
-            "candidate-blocks is 2, expected 0 but with the aggregation bayes: for energies, "
-            "candidates that were not looked at have no value that is neutral to their neighbours");
+            "candidate-blocks is 2, expected 0 unless aggregation is bayes: for energies, "
+            "candidates that were not searched have no value that is neutral to their neighbours");
   EXPECT_EQ(message([](MethodOverrides& p) { p.cost = MatchCost::kGradient; }),
             "candidate-blocks is 2, expected 0 with the cost gradient: its likelihoods compare a "
             "candidate with the best of all");

@@ -86,9 +86,10 @@ void validate_reduced_search(const MethodParameters& parameters,
   };
   if (is_two_dimensional || !can_reduce_search(parameters)) {
     throw UsageError(
-        "search-size is not full, expected full but for a search along rows by aggregation bayes "
-        "with levels above 1, prior-smoothing maximum, a prior other than quadratic, selection "
-        "winner, candidate-step 1, and cost census-rays with one threshold and colour luma");
+        "search-size is not full, expected full: a reduced search-size needs a search along rows, "
+        "aggregation bayes, levels above 1, prior-smoothing maximum, a prior other than quadratic, "
+        "selection winner, candidate-step 1, and cost census-rays with one threshold and colour "
+        "luma");
   }
   if (refinement.edge_snapping_px > 0) {
     refuse("edge-snapping", refinement.edge_snapping_px,

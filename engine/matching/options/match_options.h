@@ -27,7 +27,8 @@ struct ResolvedMatchOptions {
   std::optional<RefinementOptions> refinement;  ///< empty: maps keep the winners
 };
 
-/// Everything that determines a pair's disparity maps. Defaults are those of the command line.
+/// Everything that determines a pair's disparity maps. Defaults are those of the command line, where
+/// only `disparities` differs: it is automatic there.
 struct MatchOptions {
   /// Empty: that of the preset in force. Cannot be combined with `preset`.
   std::optional<MatchMethod> method;
@@ -35,15 +36,15 @@ struct MatchOptions {
   std::optional<MatchPreset> preset;
   /// At most kMaxCandidates values.
   DisparityRange disparities;
-  /// `disparities` must still be replaced by the result of estimate_disparity_range(), by the code
-  /// that reads the images. Matchers refuse it.
+  /// `disparities` must still be replaced by the result of estimate_disparity_range(). PairMatcher
+  /// does so for each pair, StereoMatcher refuses it.
   bool disparities_auto = false;
   /// Vertical component of a two-dimensional search, y_left − y_right (5.5.3); empty: 0 only.
   std::optional<DisparityRange> disparities_y;
   /// As disparities_auto, for `disparities_y` (set) and find_vertical_range().
   bool disparities_y_auto = false;
   MethodOverrides parameters;
-  Side reference = Side::kLeft;
+  Side reference = Side::kLeft;  ///< whose map results, where no MatchRequest names others
   /// Winner-take-all only: no refinement (sub-pixel stays as set above).
   bool raw = false;
   RefinementOverrides refinement;

@@ -60,8 +60,8 @@ void validate_pruning(const MethodParameters& parameters) {
   require(parameters.levels > 1, "candidate-blocks", blocks,
           "0 with a single level: candidates are chosen by the winners of a coarser level");
   require(has_likelihoods(parameters), "candidate-blocks", blocks,
-          "0 but with the aggregation bayes: for energies, candidates that were not looked at have "
-          "no value that is neutral to their neighbours");
+          "0 unless aggregation is bayes: for energies, candidates that were not searched have no "
+          "value that is neutral to their neighbours");
   require(
       !is_evidence(parameters), "candidate-blocks", blocks,
       fmt::format("0 with the cost {}: its likelihoods compare a candidate with the best of all",
@@ -69,8 +69,7 @@ void validate_pruning(const MethodParameters& parameters) {
   require(parameters.prior_smoothing == PriorSmoothing::kMaximum, "candidate-blocks", blocks,
           "0 with prior-smoothing sum: pruning needs prior-smoothing maximum");
   require(parameters.prior != Prior::kQuadratic, "candidate-blocks", blocks,
-          "0 with prior quadratic: nothing limits what a disparity costs that a neighbour did not "
-          "search");
+          "0 with prior quadratic: it is unbounded, so unsearched candidates have no finite cost");
   require(parameters.selection == Selection::kWinner, "candidate-blocks", blocks,
           fmt::format("0 with selection {}: a path along a row needs the costs of all candidates",
                       name_of(parameters.selection)));
@@ -85,9 +84,11 @@ void validate_search_size(const MethodParameters& parameters) {
 
 void validate_windows(const MethodParameters& parameters) {
   if (parameters.window_levels > 0) {
-    require(can_search_windows(parameters), "window-levels", parameters.window_levels,
-            "0 but with aggregation bayes, levels above 1, prior-smoothing maximum, a prior other "
-            "than quadratic, selection winner, candidate-step 1 and cost census-rays of luma");
+    require(
+        can_search_windows(parameters), "window-levels", parameters.window_levels,
+        "0; a search in windows needs aggregation bayes, levels above 1, prior-smoothing maximum, "
+        "a prior other than quadratic, selection winner, candidate-step 1 and cost census-rays "
+        "of luma");
     require(parameters.final_iterations > 0, "final-iterations", parameters.final_iterations,
             "at least 1 with window-levels above 0");
     require(parameters.window_levels < 2 || parameters.iterations > 0, "iterations",

@@ -89,7 +89,8 @@ struct MethodParametersOf {
   Field<ColourUse> colour = by_default<Field>(ColourUse::kLuma);
   /// Truncated cost: grey levels, > 0.
   Field<double> truncation = by_default<Field>(20.0);
-  /// σM in grey levels, > 0: contaminated and combined cost, Bayes, entropy.
+  /// σM in the cost's unit (grey levels; census codes: differing neighbours), > 0: contaminated and
+  /// combined cost, Bayes, entropy.
   Field<double> sigma_measurement = by_default<Field>(5.0);
   /// εM, inside (0, 1): contaminated and combined cost, Bayes.
   Field<double> epsilon_measurement = by_default<Field>(0.1);

@@ -1,0 +1,33 @@
+#include "engine/rectification/kitti_cameras.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <vector>
+
+namespace vantage {
+namespace {
+
+std::optional<KittiCameras> of(std::vector<std::filesystem::path> images) {
+  return kitti_cameras_of(images);
+}
+
+TEST(KittiCamerasOf, NamesOfFoldersSayThem) {
+  EXPECT_EQ(of({"training/image_2/000000_10.png", "training/image_3/000000_10.png"}),
+            KittiCameras::kColour);
+  EXPECT_EQ(of({"image_00/data/0.png", "image_01/data/0.png"}), KittiCameras::kGrey);
+  EXPECT_EQ(of({"training/colored_0/1.png", "training/colored_1/1.png"}), KittiCameras::kColour);
+  EXPECT_EQ(of({"/data/image_0/old/../../image_3/x.png"}), KittiCameras::kColour);
+  EXPECT_EQ(of({"image_0/image_2/x.png"}), KittiCameras::kColour) << "the innermost folder";
+}
+
+TEST(KittiCamerasOf, OtherNamesSayNothing) {
+  EXPECT_FALSE(of({}));
+  EXPECT_FALSE(of({""}));
+  EXPECT_FALSE(of({"left/image_2.png", "right/image_3.png"}));
+  EXPECT_FALSE(of({"image_0/x.png", "image_2/x.png"})) << "they do not agree";
+  EXPECT_EQ(of({"image_2/x.png", "poses.csv"}), KittiCameras::kColour);
+}
+
+}  // namespace
+}  // namespace vantage
