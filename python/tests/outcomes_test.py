@@ -60,6 +60,16 @@ def test_several_images_of_bad_input(line, matcher, arguments, message):
         vantage.Matcher(**RANGE).compute(line[0], line[1], more=[line[2][:, 1:]], baselines=[1, 2])
 
 
+def test_cameras_one_above_the_other(pair, tmp_path):
+    upper, lower = (np.ascontiguousarray(image.swapaxes(0, 1)) for image in pair)
+    for name, image in [("upper.png", upper), ("lower.png", lower)]:
+        vantage.write_image(tmp_path / name, image)
+    run_program("match", tmp_path / "upper.png", tmp_path / "lower.png", "--vertical",
+                "--disparities", "0:15", "-o", tmp_path / "map.npy", "--no-tuning")
+    result = vantage.Matcher(**RANGE)(upper.swapaxes(0, 1), lower.swapaxes(0, 1))
+    assert same(np.ascontiguousarray(result.disparity.T), np.load(tmp_path / "map.npy"))
+
+
 @pytest.mark.parametrize("options, wanted", [
     ({"preset": "fast"}, {}),
     ({"preset": "balanced"}, {"level": 1, "rows": (3, 20)}),
