@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 #include <thread>
 #include <utility>
 
+#include "engine/data_limit.h"
 #include "engine/error.h"
 #include "engine/io/photograph_io.h"
 #include "engine/out_of_memory.h"
@@ -53,17 +53,6 @@ std::string bytes_text(std::size_t bytes) {
     ++power;
   }
   return power == 0 ? fmt::format("{}", bytes) : fmt::format("{}{}", bytes, kUnits[power - 1]);
-}
-
-/// Private writable memory, which is what the limit counts.
-std::size_t data_bytes() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with("VmData:")) {
-      return std::stoull(line.substr(7)) * 1024;
-    }
-  }
-  return 0;
 }
 
 void limit_memory(std::size_t bytes) {

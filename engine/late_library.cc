@@ -5,10 +5,16 @@
 
 #include <utility>
 
+#include "engine/data_limit.h"
 #include "engine/error.h"
 
 namespace vantage {
 namespace {
+
+void* open_library(const std::string& file_name) {
+  const UnlimitedData unlimited;
+  return ::dlopen(file_name.c_str(), RTLD_NOW | RTLD_LOCAL);
+}
 
 /// Reason for the last dlfcn.h failure in this thread.
 std::string last_failure() {
@@ -19,9 +25,7 @@ std::string last_failure() {
 }  // namespace
 
 LateLibrary::LateLibrary(std::string file_name, std::string_view without_it)
-    : file_name_(std::move(file_name)),
-      without_it_(without_it),
-      handle_(::dlopen(file_name_.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+    : file_name_(std::move(file_name)), without_it_(without_it), handle_(open_library(file_name_)) {
   if (handle_ == nullptr) {
     throw Error(fmt::format("{}: the library {} cannot be opened ({})", without_it_, file_name_,
                             last_failure()));

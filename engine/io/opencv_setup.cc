@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdlib>
 #include <iostream>
+#include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <streambuf>
@@ -43,8 +44,15 @@ void prepare_opencv() {
     ::setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
     if (is_host_of_opencv) {
       cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+      // GDAL, which reads some TIFFs, would print its own errors.
+      ::setenv("CPL_LOG", "/dev/null", 0);
       // cv::error() would print every exception before throwing it.
-      cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
+      cv::redirectError([](int code, const char*, const char*, const char*, int, void*) {
+        if (code == cv::Error::StsNoMem) {
+          throw std::bad_alloc();  // as everywhere else
+        }
+        return 0;
+      });
       cv::setNumThreads(1);
     }
     if (std::cerr.rdbuf() != nullptr) {

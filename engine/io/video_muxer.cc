@@ -73,6 +73,11 @@ void VideoMuxer::begin() {
 }
 
 void VideoMuxer::write(AVPacket& packet, int stream, AVRational time_unit) {
+  if (is_matroska_ && stream > 0 && packet.pts < 0) {
+    // Start-up of a sound decoder. Matroska has no times before 0: it would shift the video.
+    libav().av_packet_unref(&packet);
+    return;
+  }
   packet.stream_index = stream;
   packet.pos = -1;
   libav().av_packet_rescale_ts(&packet, time_unit, output_->streams[stream]->time_base);

@@ -111,6 +111,16 @@ TEST_F(InputBadFiles, LimitsOfPixelsAndMemory) {
   EXPECT_EQ(match(folder_ / "map.pfm", {"--max-pixels=3763", "--memory=1G"}).exit_code, 0);
   EXPECT_EQ(match(folder_ / "map.pfm", {"--max-pixels=0"}).exit_code, 2);
   EXPECT_EQ(match(folder_ / "map.pfm", {"--memory=0"}).exit_code, 2);
+  // Libraries that are opened late do not count for the limit, and print nothing.
+  const std::string tile = folder_ / "tile.tif";
+  write_photograph(tile, {Image<float>(71, 53)});
+  for (const char* memory : {"1K", "500K"}) {
+    const ProcessResult tight = run_vantage({"asp", tile, tile, folder_ / "asp.tif", "--quiet",
+                                             "--disp-min=0", "--disp-max=8", "--memory", memory});
+    EXPECT_LE(tight.exit_code, 1);
+    EXPECT_TRUE(tight.exit_code == 0 ? tight.err.empty() : bool{is_one_line(tight, "asp")})
+        << tight.err;
+  }
 }
 
 TEST_F(InputBadFiles, PairsThatDoNotGoTogether) {

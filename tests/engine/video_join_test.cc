@@ -9,6 +9,11 @@
 #include <string>
 #include <vector>
 
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
+#include "engine/io/libav.h"
 #include "engine/io/video_io.h"
 #include "tests/engine/video_test_support.h"
 
@@ -153,6 +158,25 @@ TEST(VideoJoin, CopiesSoundThatMp4CanHoldFromItsMomentOn) {
                                whole.samples.at(static_cast<std::size_t>(first + i - delay))));
     }
     EXPECT_LT(difference, 1e-4) << begin;
+  }
+}
+
+TEST(VideoJoin, StartsAtTimeZeroInMatroska) {
+  const TemporaryFolder folder;
+  VideoWriter writer(folder / "segment.mkv", 64, 48,
+                     {.rate = kRate, .coding = VideoCoding::kFfv1_16});
+  for (int i = 0; i < 15; ++i) {
+    writer.write(Photograph{Image<std::uint16_t>(64, 48)});
+  }
+  writer.finish();
+  const std::vector<std::filesystem::path> segments = {folder / "segment.mkv"};
+  // Encoded, and copied with a packet from before its start.
+  join_videos(segments, kRate, {put_sounding_video(folder), 0, 1.5}, folder / "encoded.mkv");
+  join_videos(segments, kRate, {folder / "encoded.mkv", 0.5, 1.5}, folder / "copied.mkv");
+  for (const char* name : {"encoded.mkv", "copied.mkv"}) {
+    const LibavInput input = open_media_file(folder / name);
+    EXPECT_EQ(find_video_stream(*input)->start_time, 0) << name;
+    EXPECT_EQ(sound_codec(folder / name), "aac");
   }
 }
 
