@@ -112,9 +112,8 @@ void add_slurm_settings(Settings& settings, SlurmOptions& options) {
   settings.integer("drain-time", options.drain_seconds, "SECONDS",
                    "Time before the limit at which a task starts no more frames; auto: 120, at "
                    "most a quarter of the limit");
-  settings.integer(
-      "cpus", options.cpus, "N",
-      "Number of processors per task; auto: --threads, else the default of the cluster");
+  settings.integer("cpus", options.cpus, "N",
+                   "Processors per task; auto: --threads, else the default of the cluster");
   settings.text("slurm-memory", options.memory, "SIZE", "Memory per task, such as 8G");
   settings.integer("retries", options.retries, "N",
                    "Number of further attempts after a task has failed");
