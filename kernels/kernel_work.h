@@ -274,7 +274,8 @@ inline constexpr KernelWork kReduceCompactEnergiesWork = {3 + 1 + 2, kLaneTreeOp
                                                           4 * 0.25 + 0.25, 0};
 /// Two minima and a sum per cell, in place.
 inline constexpr KernelWork kAllowSlantWork = {3, 0, 2 * 0.25, 0};
-/// As kReduceCompactEnergiesWork for both images: one sum more, for pairs of columns that begin at odd ones.
+/// As kReduceCompactEnergiesWork for both images: one sum more, for pairs of columns that begin at
+/// odd ones.
 inline constexpr KernelWork kReducePairEnergiesWork = {2 * (3 + 1 + 2) + 1, 2 * kLaneTreeOperations,
                                                        4 * 0.25 + 2 * 0.25, 0};
 inline constexpr KernelWork kExpandCompactWork = {1 + kExp2Operations, 0, 0.25 + 1, 0};
