@@ -11,110 +11,26 @@
 #include "apps/commands.h"
 #include "apps/kitti_cameras_choice.h"
 #include "apps/match_job.h"
+#include "apps/match_outputs.h"
 #include "apps/rectification_check.h"
 #include "apps/run_report.h"
 #include "apps/settings.h"
 #include "apps/tell.h"
+#include "apps/vertical_pair.h"
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
-#include "engine/image/transposed.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/displacement_io.h"
 #include "engine/io/photograph_io.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/unrectified/rectified_map.h"
 #include "engine/matching/unrectified/unrectified_matcher.h"
-#include "engine/matching/volume/posterior_moments.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/stereo_calibration.h"
-#include "engine/sequence/preview_range.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
-
-void write_map(const MatchJob& job, const std::string& path, const DisparityMaps& maps, Side side) {
-  const MatchedMap& map = maps.of(side);
-  if (!job.match.disparities_y) {
-    write_disparity(path, map.disparity_px.view());
-    return;
-  }
-  write_displacements(path, {map.disparity_px.view(), map.disparity_y_px.view()}, side);
-}
-
-void write_results(const MatchJob& job, const DisparityMaps& maps,
-                   const Image<float>& depth_resolution, const DepthFiles& depth_files) {
-  const Side side = job.is_left() ? Side::kLeft : Side::kRight;
-  const MatchedMap& map = maps.of(side);
-  write_map(job, job.output, maps, side);
-  if (!job.output_right.empty()) {
-    write_map(job, job.output_right, maps, Side::kRight);
-  }
-  if (!job.confidence.empty()) {
-    write_disparity(job.confidence, map.confidence.view());
-  }
-  if (!job.depth.resolution_file.empty()) {
-    write_disparity(job.depth.resolution_file, depth_resolution.view());
-  }
-  write_depth_files(job.depth.outputs, depth_files);
-  if (!job.unmatched.empty()) {
-    write_mask(job.unmatched, map.unmatched.view());
-  }
-  if (!job.unmatched_right.empty()) {
-    write_mask(job.unmatched_right, maps.right.unmatched.view());
-  }
-  if (!job.preview.empty()) {
-    const PreviewRange range = preview_range_of(job.match.disparities);
-    // Along the baseline.
-    const bool is_y = job.vertical && job.match.disparities_y;
-    const DisparityMap& shown = is_y ? map.disparity_y_px : map.disparity_px;
-    write_photograph(job.preview, {colour_preview(shown.view(), range.min_px, range.max_px)});
-  }
-}
-
-/// Turns columns into rows, for cameras one above the other.
-void transpose(std::vector<Photograph>& images) {
-  for (Photograph& image : images) {
-    image = transposed(image);
-  }
-}
-
-void transpose(DisparityMaps& maps) {
-  const auto transpose_unless_empty = [](auto& image) {
-    if (!image.empty()) {
-      image = transposed(std::as_const(image).view());
-    }
-  };
-  for (MatchedMap* map : {&maps.left, &maps.right}) {
-    transpose_unless_empty(map->disparity_px);
-    transpose_unless_empty(map->disparity_y_px);
-    transpose_unless_empty(map->confidence);
-    transpose_unless_empty(map->unmatched);
-  }
-  if (!maps.left.disparity_y_px.empty() || !maps.right.disparity_y_px.empty()) {
-    for (MatchedMap* map : {&maps.left, &maps.right}) {
-      std::swap(map->disparity_px, map->disparity_y_px);
-    }
-  }
-}
-
-void transpose(CyclopeanMap& map) {
-  if (!map.disparity_px.empty()) {
-    map.disparity_px = transposed(std::as_const(map.disparity_px).view());
-    map.seen_by = transposed(std::as_const(map.seen_by).view());
-  }
-}
-
-void write_cyclopean(const MatchJob& job, const CyclopeanMap& map) {
-  if (!job.cyclopean.empty()) {
-    write_disparity(job.cyclopean, map.disparity_px.view());
-  }
-  if (!job.cyclopean_occlusion.empty()) {
-    write_mask(job.cyclopean_occlusion, map.seen_by.view());
-  }
-}
 
 void require_equal_sizes(const MatchJob& job, const std::vector<Photograph>& images) {
   const std::vector<std::string> names = job.inputs();
@@ -149,66 +65,6 @@ void rectify(const MatchJob& job, const DepthGeometry& geometry, std::vector<Pho
       image = std::move(rectified);
     }
   });
-}
-
-DepthFiles depth_files(const MatchJob& job, const std::optional<MapCamera>& camera,
-                       const Photograph& colours, const MatchedMap& map,
-                       ImageView<const float> along_px, Execution& execution, RunReport& report) {
-  if (!job.depth.outputs.any()) {
-    return {};
-  }
-  const CloudSource source{.disparity_px = along_px,
-                           .colours = &colours,
-                           .unmatched = job.depth.outputs.reads_unmatched()
-                                            ? map.unmatched.view()
-                                            : ImageView<const std::uint8_t>(),
-                           .confidence = map.confidence.view(),
-                           .camera = *camera};
-  return report.timed_compute(
-      "depth", [&] { return make_depth_files(job.depth.outputs, source, execution, report); });
-}
-
-/// Outputs of the disparity space.
-struct SpaceOutputs {
-  std::optional<NpyVolumeFile> volume;
-  std::optional<PosteriorMoments> posterior;
-
-  explicit SpaceOutputs(const MatchJob& job) {
-    if (!job.volume.file.empty()) {
-      volume.emplace(job.volume.file, job.volume.rows, job.vertical);
-    }
-    if (job.wants_posterior()) {
-      posterior.emplace();
-    }
-  }
-  [[nodiscard]] std::vector<VolumeRequest> requests(const MatchJob& job) {
-    const Side side = job.is_left() ? Side::kLeft : Side::kRight;
-    std::vector<VolumeRequest> requests;
-    if (volume) {
-      requests.push_back({side, job.volume.kind, job.volume.level, &*volume});
-    }
-    if (posterior) {
-      requests.push_back({.side = side, .sink = &*posterior});
-    }
-    return requests;
-  }
-};
-
-void write_moments(const std::string& path, const Image<float>& values, bool is_vertical) {
-  if (!path.empty()) {
-    write_disparity(path, is_vertical ? transposed(values.view()).view() : values.view());
-  }
-}
-
-void write_space(const MatchJob& job, SpaceOutputs& space, RunReport& report) {
-  if (space.posterior) {
-    write_moments(job.posterior_mean, space.posterior->mean_px(), job.vertical);
-    write_moments(job.posterior_variance, space.posterior->variance_px2(), job.vertical);
-  }
-  if (space.volume) {
-    space.volume->commit();
-    report.add_result("volume", volume_report(job.volume, *space.volume));
-  }
 }
 
 void match_images(const MatchJob& job, const StereoMatcher& matcher,
@@ -257,6 +113,20 @@ MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps&
   matcher.add_memory_use(use);
   add_scratch_use(execution, use);
   return use;
+}
+
+AppliedTuning tuning_of(const MatchJob& job, bool is_unrectified, const Photograph& left,
+                        const Photograph& right, const Settings& settings) {
+  if (job.has_several()) {
+    return no_tuning("tuning is for pairs, but there are more images");
+  }
+  if (is_unrectified) {
+    return no_tuning("tuning is for rectified pairs");
+  }
+  return apply_tuning(
+      job.tuning,
+      {.match = job.match, .execution = job.common.execution, .left = left, .right = right},
+      settings.command(), job.common.quiet);
 }
 
 /// Prints what was estimated.
@@ -326,15 +196,7 @@ int command_match(const Arguments& arguments) {
   const bool is_range_found = job.match.disparities_auto;
   choose_disparities(settings, job.common, left, right, job.match, execution, report);
   require_files_hold_search(job);
-  const AppliedTuning tuning = job.has_several()
-                                   ? no_tuning("tuning is for pairs, but there are more images")
-                               : rectifier ? no_tuning("tuning is for rectified pairs")
-                                           : apply_tuning(job.tuning,
-                                                          {.match = job.match,
-                                                           .execution = job.common.execution,
-                                                           .left = left,
-                                                           .right = right},
-                                                          settings.command(), job.common.quiet);
+  const AppliedTuning tuning = tuning_of(job, rectifier.has_value(), left, right, settings);
   report.set_tuning(tuning.report, tuning.summary);
   std::optional<Execution> tuned_execution;
   if (tuning.settings != TunedSettings{}) {

@@ -38,6 +38,75 @@ SurfaceEnergy surface_energy(Fill fill) {
   return fill == Fill::kThinPlate ? SurfaceEnergy::kThinPlate : SurfaceEnergy::kMembrane;
 }
 
+using MapsToRefine = std::span<const MapToRefine* const>;
+
+void snap_edges(const RefinementOptions& options, MapsToRefine maps, Execution& execution,
+                RefinementWork& work) {
+  for (const MapToRefine* one : maps) {
+    if (one->map->disparity_px.empty()) {
+      continue;
+    }
+    find_edges(*one->image, execution, work.edge_snapping);
+    snap_discontinuities(work.edge_snapping.edges, options.edge_snapping_px, execution,
+                         one->map->disparity_px);
+  }
+}
+
+void fit_surfaces(const RefinementOptions& options, MapsToRefine maps, Execution& execution,
+                  RefinementWork& work) {
+  for (const MapToRefine* one : maps) {
+    MatchedMap& matched = *one->map;
+    fit_surface(matched.unmatched, options.surface_fit_px, options.surface_fit_step_px, one->search,
+                execution, work.surface_fit, matched.disparity_px,
+                one->kept != nullptr ? &one->kept->changed() : nullptr);
+    if (!matched.disparity_y_px.empty()) {
+      fit_surface(matched.unmatched, options.surface_fit_px, options.surface_fit_step_px,
+                  one->search_y, execution, work.surface_fit, matched.disparity_y_px);
+    }
+  }
+}
+
+/// Makes one map dense.
+void fill(const RefinementOptions& options, const MapToRefine& map, Execution& execution,
+          RefinementWork& work) {
+  const bool is_canonical = fills_uniform_regions(options.fill);
+  MatchedMap& matched = *map.map;
+  if (map.kept != nullptr) {
+    map.kept->restore(matched.disparity_px);
+  }
+  if (is_canonical) {
+    find_textureless_pixels(*map.image, options.uniform_contrast, execution, work.uniform_pixels,
+                            work.uniform);
+    keep_visible_unmatched(matched.disparity_px.view(), matched.unmatched, map.side,
+                           map.pixels_per_column, execution, work.uniform);
+  }
+  for (DisparityMap* component_px : {&matched.disparity_px, &matched.disparity_y_px}) {
+    if (component_px->empty()) {
+      continue;
+    }
+    const Mask* unmatched = &matched.unmatched;
+    if (is_canonical) {
+      work.rest = matched.unmatched.copy();
+      fill_canonically(work.uniform, work.uniform_pixels.grey, surface_energy(options.fill),
+                       component_px == &matched.disparity_px ? map.search : map.search_y, execution,
+                       work.rest, *component_px);
+      unmatched = &work.rest;
+    }
+    fill_unmatched(*unmatched, map.side, options.fill, execution, *component_px);
+    if (options.fill == Fill::kMedian || is_canonical) {
+      take_filled_medians(*unmatched, *map.image, median_grid(map), execution, work.filled_medians,
+                          *component_px,
+                          map.kept != nullptr && !is_canonical ? &map.kept->changed() : nullptr);
+    }
+  }
+  if (map.kept != nullptr) {
+    if (!is_canonical) {  // whose regions reach over many tiles
+      map.kept->restore(matched.disparity_px);
+    }
+    map.kept->remember(matched);
+  }
+}
+
 }  // namespace
 
 std::size_t held_bytes(const RefinementWork& work) {
@@ -51,18 +120,11 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
                  Execution& execution, RefinementWork& work,
                  const std::function<void(std::string_view)>& start_step) {
   const std::array<const MapToRefine*, 2> both = {&map, other};
-  std::span<const MapToRefine* const> maps(both.data(), other != nullptr ? 2 : 1);
+  MapsToRefine maps(both.data(), other != nullptr ? 2 : 1);
 
   if (options.edge_snapping_px > 0) {
     start_step("edge snapping");
-    for (const MapToRefine* one : maps) {
-      if (one->map->disparity_px.empty()) {
-        continue;
-      }
-      find_edges(*one->image, execution, work.edge_snapping);
-      snap_discontinuities(work.edge_snapping.edges, options.edge_snapping_px, execution,
-                           one->map->disparity_px);
-    }
+    snap_edges(options, maps, execution, work);
   }
   // Both are checked before either is changed.
   const bool is_checked = options.cross_check && other != nullptr;
@@ -106,55 +168,11 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   }
   if (options.surface_fit_px > 0) {
     start_step("surface fit");
-    for (const MapToRefine* one : maps) {
-      MatchedMap& matched = *one->map;
-      fit_surface(matched.unmatched, options.surface_fit_px, options.surface_fit_step_px,
-                  one->search, execution, work.surface_fit, matched.disparity_px,
-                  one->kept != nullptr ? &one->kept->changed() : nullptr);
-      if (!matched.disparity_y_px.empty()) {
-        fit_surface(matched.unmatched, options.surface_fit_px, options.surface_fit_step_px,
-                    one->search_y, execution, work.surface_fit, matched.disparity_y_px);
-      }
-    }
+    fit_surfaces(options, maps, execution, work);
   }
   start_step("fill");
-  const bool is_canonical = fills_uniform_regions(options.fill);
   for (const MapToRefine* one : maps) {
-    MatchedMap& matched = *one->map;
-    if (one->kept != nullptr) {
-      one->kept->restore(matched.disparity_px);
-    }
-    if (is_canonical) {
-      find_textureless_pixels(*one->image, options.uniform_contrast, execution, work.uniform_pixels,
-                              work.uniform);
-      keep_visible_unmatched(matched.disparity_px.view(), matched.unmatched, one->side,
-                             one->pixels_per_column, execution, work.uniform);
-    }
-    for (DisparityMap* component_px : {&matched.disparity_px, &matched.disparity_y_px}) {
-      if (component_px->empty()) {
-        continue;
-      }
-      const Mask* unmatched = &matched.unmatched;
-      if (is_canonical) {
-        work.rest = matched.unmatched.copy();
-        fill_canonically(work.uniform, work.uniform_pixels.grey, surface_energy(options.fill),
-                         component_px == &matched.disparity_px ? one->search : one->search_y,
-                         execution, work.rest, *component_px);
-        unmatched = &work.rest;
-      }
-      fill_unmatched(*unmatched, one->side, options.fill, execution, *component_px);
-      if (options.fill == Fill::kMedian || is_canonical) {
-        take_filled_medians(
-            *unmatched, *one->image, median_grid(*one), execution, work.filled_medians,
-            *component_px, one->kept != nullptr && !is_canonical ? &one->kept->changed() : nullptr);
-      }
-    }
-    if (one->kept != nullptr) {
-      if (!is_canonical) {  // whose regions reach over many tiles
-        one->kept->restore(matched.disparity_px);
-      }
-      one->kept->remember(matched);
-    }
+    fill(options, *one, execution, work);
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,37 +7,11 @@
 
 #include "engine/execution.h"
 #include "engine/io/file_lock.h"
-#include "engine/matching/stereo_matcher.h"
-#include "engine/rectification/vertical_error.h"
+#include "engine/scene_graph/edge_maps.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/scene_graph/stored_scene.h"
 
 namespace vantage {
-
-/// An input image of a scene.
-struct SceneImage {
-  std::filesystem::path file;
-  ScenePosition position;
-  std::optional<SceneCamera> camera = std::nullopt;  ///< of all images of a scene, or of none
-  ImageSize camera_size = {};                        ///< that the camera is for; 0×0: unknown
-};
-
-struct SceneBuildOptions {
-  /// Matching options. `disparities` is the range of the shortest edges, scaled for longer ones.
-  /// With `disparities_auto` every edge has its own range.
-  MatchOptions match;
-  std::string settings = "{}";  ///< a JSON object: the fields of `match` that affect maps
-  /// Copies the images into the folder, which then depends on nothing else.
-  bool copy_images = false;
-  /// Refuses edges whose rows or columns do not correspond, or of which few pixels match
-  /// (edge_check.h).
-  bool check_rectification = true;
-  /// Neighbours that every posed camera is joined to, 1 to kMaxNeighbours.
-  int neighbours = 4;
-
-  /// Throws UsageError as MatchOptions does, and for a search in two dimensions.
-  void validate() const;
-};
 
 /// Matches the edges of a scene, one after the other, and stores them in a folder: scene.json, and
 /// two maps and two masks of each edge in maps/. Files are written atomically, and scene.json lists
@@ -78,16 +51,7 @@ class SceneBuilder {
   /// Indices into edges() of the edges still to match.
   [[nodiscard]] const std::vector<int>& edges_to_match() const { return edges_to_match_; }
 
-  /// Result for one edge.
-  struct BuiltEdge {
-    StoredEdge stored;
-    /// Misalignment of its rows or columns; negative disparities indicate wrong camera positions.
-    /// None unless requested, or if too few points were found.
-    std::optional<VerticalError> rectification;
-    double check_seconds = 0;  ///< duration of this check
-    /// Why an edge between posed cameras is left out; empty if it was stored.
-    std::string refusal;
-  };
+  using BuiltEdge = vantage::BuiltEdge;
 
   /// Matches and stores an edge. Throws Error naming the images, also for those without poses that
   /// the check refuses; nothing of such an edge is stored.
@@ -99,25 +63,12 @@ class SceneBuilder {
  private:
   [[nodiscard]] StoredImage stored_image(const SceneImage& image) const;
   void find_edges();
-  void remove_leftovers() const;
   void keep_finished_edges();
   [[nodiscard]] bool is_same_image(const StoredScene& before, int vertex) const;
   [[nodiscard]] bool is_finished(const StoredEdge& stored, const StoredScene& before,
                                  const SceneEdge& edge) const;
-  /// Removes the maps that no longer belong to the scene.
-  void remove_outdated_maps(const StoredScene& before) const;
-  [[nodiscard]] std::array<Photograph, 2> photographs_of(const SceneEdge& edge) const;
-  /// The maps of `built.stored.edge` on the grids of its images; sets the other values of `built`
-  /// but the files.
-  [[nodiscard]] DisparityMaps maps_of(BuiltEdge& built, MatchReport* report) const;
-  /// Likewise for posed cameras.
-  [[nodiscard]] DisparityMaps posed_maps_of(BuiltEdge& built, MatchReport* report) const;
-  /// Matches images whose rows correspond; `scale`: factor of the given disparities.
-  [[nodiscard]] DisparityMaps match(const std::array<Photograph, 2>& images, double scale,
-                                    BuiltEdge& built, MatchReport* report) const;
-  [[nodiscard]] MatchOptions options_for(double scale, const Photograph& first,
-                                         const Photograph& second) const;
-  void store(const DisparityMaps& maps, StoredEdge& result);
+  /// Adds an edge whose maps are stored.
+  void add(const StoredEdge& stored);
 
   std::filesystem::path folder_;
   std::vector<SceneImage> images_;
