@@ -9,6 +9,7 @@
 
 #include "apps/tell.h"
 #include "apps/vertical_error_report.h"
+#include "engine/rectification/row_error_cost.h"
 #include "engine/rectification/vertical_error.h"
 #include "scheduler/trace.h"
 

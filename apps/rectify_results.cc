@@ -7,6 +7,7 @@
 #include "apps/matrix_rows.h"
 #include "apps/tell.h"
 #include "apps/vertical_error_report.h"
+#include "engine/rectification/row_error_cost.h"
 
 namespace vantage::apps {
 namespace {

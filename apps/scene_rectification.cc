@@ -9,6 +9,7 @@
 #include "apps/rectification_check.h"
 #include "apps/tell.h"
 #include "apps/vertical_error_report.h"
+#include "engine/rectification/row_error_cost.h"
 #include "engine/scene_graph/edge_check.h"
 
 namespace vantage::apps {

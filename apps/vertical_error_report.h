@@ -8,15 +8,6 @@
 
 namespace vantage::apps {
 
-/// The additional percentage of pixels that are wrong by more than a pixel with this row error,
-/// interpolated from measurements (see the .cc file).
-double more_bad_percent(double rows_off_px);
-/// The percentage above which a warning is printed.
-inline constexpr double kMaxMoreBad_percent = 5;
-
-/// Whether the row error is too small to matter for matching.
-bool is_rectified(const VerticalError& error);
-
 /// "rows are off by 0.52 px, which makes about 7 % more of the pixels wrong".
 std::string cost_text(const VerticalError& error, std::string_view lines);
 

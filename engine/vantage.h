@@ -42,6 +42,7 @@
 #include "engine/rectification/rectification_file.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/rectification/rectifier.h"
+#include "engine/rectification/row_error_cost.h"
 #include "engine/rectification/stereo_calibration.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "engine/rectification/vertical_error.h"
