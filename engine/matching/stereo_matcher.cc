@@ -15,6 +15,7 @@
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stage_clock.h"
+#include "engine/matching/stereo_matcher_parts.h"
 #include "engine/matching/windows/window_level.h"
 #include "engine/out_of_memory.h"
 
@@ -32,11 +33,15 @@ ResolvedMatchOptions checked(const MatchOptions& options) {
 }  // namespace
 
 StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
-    : in_force_(checked(options)), execution_(execution), reduced_(in_force_, execution) {
+    : in_force_(checked(options)),
+      execution_(execution),
+      parts_(std::make_unique<Parts>(in_force_, execution)) {
   if (uses_pair_exposure(in_force_.parameters)) {
-    exposure_ = std::make_unique<PairExposureEstimator>(in_force_.disparities, execution_);
+    parts_->exposure = std::make_unique<PairExposureEstimator>(in_force_.disparities, execution_);
   }
 }
+
+StereoMatcher::~StereoMatcher() = default;
 
 int StereoMatcher::check_level(scheduler::Extent image) const {
   if (!in_force_.refinement) {
@@ -56,44 +61,13 @@ void StereoMatcher::estimate_exposure(const Photograph& left, const Photograph& 
                                       Prepared& prepared, MatchReport& report) const {
   // Throws for the whole images: the bands' own message would name the size of the bands.
   candidate_geometry(in_force_, Side::kLeft, left.width(), left.height());
-  const PairExposure exposure = exposure_->estimate(left, right, in_force_.parameters.colour,
-                                                    in_force_.parameters.match_exposure);
+  const PairExposure exposure = parts_->exposure->estimate(left, right, in_force_.parameters.colour,
+                                                           in_force_.parameters.match_exposure);
   prepared.of_right = exposure.of_right;
   if (in_force_.parameters.estimate_sigma_measurement && exposure.sigma_measurement) {
     prepared.parameters.sigma_measurement = *exposure.sigma_measurement;
   }
   report.exposure = exposure;
-}
-
-/// Estimates each other image against the reference; σ is that of the noisiest.
-std::vector<IntensityChanges> StereoMatcher::estimate_exposure(const Photograph& reference,
-                                                               std::span<const OtherView> others,
-                                                               Prepared& prepared,
-                                                               MatchReport& report) const {
-  std::vector<IntensityChanges> changes;
-  std::optional<double> sigma;
-  for (const OtherView& other : others) {
-    // In units of x_reference − x_other.
-    const double ratio = other.baseline / std::abs(others.front().baseline);
-    const auto [min, max] =
-        std::minmax({in_force_.disparities.min * ratio, in_force_.disparities.max * ratio});
-    const DisparityRange range{static_cast<int>(std::floor(min)), static_cast<int>(std::ceil(max))};
-    const PairExposure exposure =
-        PairExposureEstimator(range, execution_)
-            .estimate(reference, *other.photograph, in_force_.parameters.colour,
-                      in_force_.parameters.match_exposure);
-    changes.push_back(exposure.of_right);
-    if (exposure.sigma_measurement) {
-      sigma = std::max(sigma.value_or(0), *exposure.sigma_measurement);
-    }
-    if (!report.exposure) {
-      report.exposure = exposure;
-    }
-  }
-  if (in_force_.parameters.estimate_sigma_measurement && sigma) {
-    prepared.parameters.sigma_measurement = *sigma;
-  }
-  return changes;
 }
 
 /// Prepares the inputs of both maps' chains.
@@ -138,81 +112,6 @@ void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prio
                  {needs_left, needs_right}, execution_, prepared.pair);
     left.input.pair = right.input.pair = &prepared.pair;
   }
-}
-
-scheduler::ChainPlan StereoMatcher::plan(const Photograph& left, const Photograph& right) const {
-  return plans(left, right, {&execution_.options(), 1}).front();
-}
-
-std::vector<scheduler::ChainPlan> StereoMatcher::plans(
-    const Photograph& left, const Photograph& right,
-    std::span<const ExecutionOptions> executions) const {
-  require_equal_sizes(left, "left image", right, "right image");
-  const auto prepared = prepared_.borrow();
-  prepared->parameters = in_force_.parameters;
-  prepared->of_right = {};
-  DisparityMaps maps;  // never read
-  MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
-  MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
-  of_left.need = {.whole = true};
-  prepare_inputs(of_left, of_right, false, *prepared);
-  auto geometry = candidate_geometry(in_force_, Side::kLeft, left.width(), left.height());
-  maps.left.disparity_px.resize(left.width(), left.height());
-  const auto grid = displacement_grid(in_force_, Side::kLeft, left.width(), left.height());
-  if (grid) {
-    of_left.input.grid = &*grid;
-    geometry = grid->columns();
-  }
-  return plans_of(in_force_.parameters, of_left, geometry, executions);
-}
-
-/// Plans for the finest level of `task`, one for each of `executions`.
-std::vector<scheduler::ChainPlan> StereoMatcher::plans_of(
-    const MethodParameters& parameters, const MapTask& task,
-    const kernels::CandidateGeometry& geometry,
-    std::span<const ExecutionOptions> executions) const {
-  const LevelVolume coarser;  // never read
-  const auto extents =
-      level_extents({task.image->width(), task.image->height()}, parameters.levels);
-  const bool has_windows = parameters.window_levels > 0 && extents.size() > 1;
-  LevelVolume costs;        // never written
-  LevelVolume right_costs;  // likewise
-  const bool is_pruned = !has_windows && parameters.candidate_blocks > 0 && extents.size() > 1;
-  CandidateBlocks blocks;
-  if (is_pruned) {
-    blocks.resize(extents.front(), geometry.count, parameters.candidate_blocks,
-                  geometry.steps_per_px);
-  }
-  const MatchChain chain(
-      parameters, geometry, task.input, {.disparity_px = task.map->disparity_px.view()},
-      has_windows ? ChainLevel{.reduced = &costs,
-                               .reduced_right = shares_costs(parameters, task.input,
-                                                             extents.front(), geometry.count)
-                                                    ? &right_costs
-                                                    : nullptr}
-                  : ChainLevel{.coarser = extents.size() > 1 ? &coarser : nullptr,
-                               .blocks = is_pruned ? &blocks : nullptr});
-  std::vector<scheduler::ChainPlan> plans;
-  for (const ExecutionOptions& execution : executions) {
-    plans.push_back(chain_plan(chain, execution, thread_count(execution, execution_.machine()),
-                               execution_.machine()));
-  }
-  return plans;
-}
-
-scheduler::ChainPlan StereoMatcher::plan_several(const Photograph& reference,
-                                                 std::span<const OtherView> others) const {
-  require_several(reference, others);
-  const auto prepared = prepared_.borrow();
-  prepared->parameters = in_force_.parameters;
-  prepared->parameters.window_levels = 0;
-  MatchedMap map;  // never read
-  map.disparity_px.resize(reference.width(), reference.height());
-  MapTask task{.side = Side::kLeft, .image = &reference, .map = &map};
-  prepare_several(task, others, std::vector<IntensityChanges>(others.size()), *prepared);
-  const auto geometry =
-      candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
-  return plans_of(prepared->parameters, task, geometry, {&execution_.options(), 1}).front();
 }
 
 bool StereoMatcher::uses_check_maps(scheduler::Extent image) const {
@@ -398,9 +297,10 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
           "there is no volume with a reduced search-size (preset realtime), which searches a few "
           "candidates around those of smaller images; expected search-size full");
     }
-    reduced_.match(left, right,
-                   {.left = request.left, .right = request.right, .confidence = request.confidence},
-                   request.previous, maps, clock, times);
+    parts_->reduced.match(
+        left, right,
+        {.left = request.left, .right = request.right, .confidence = request.confidence},
+        request.previous, maps, clock, times);
     return;
   }
   const int check_level = this->check_level({left.width(), left.height()});
@@ -411,10 +311,10 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   if (is_symmetric) {
     of_left.need.whole = of_right.need.whole = true;
   }
-  const auto prepared = prepared_.borrow();
+  const auto prepared = parts_->prepared.borrow();
   prepared->parameters = in_force_.parameters;
   prepared->of_right = {};
-  if (exposure_) {
+  if (parts_->exposure) {
     clock.start("grey levels");
     estimate_exposure(left, right, *prepared, times);
     clock.start("prepare");
@@ -453,100 +353,19 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     }
     return;
   }
-  const auto work = refinement_works_.borrow();
+  const auto work = parts_->refinement_works.borrow();
   const MapToRefine left_map = to_refine(of_left, request.left);
   const MapToRefine right_map = to_refine(of_right, request.right);
   refine_maps(*in_force_.refinement, left_map, &right_map, execution_, *work,
               [&](std::string_view step) { clock.start(step); });
 }
 
-/// Throws where images cannot be matched at once.
-void StereoMatcher::require_several(const Photograph& reference,
-                                    std::span<const OtherView> others) const {
-  if (in_force_.parameters.selection == Selection::kSymmetric) {
-    throw UsageError(
-        "selection is symmetric, expected winner or scanline with several baselines: a symmetric "
-        "solution is of two images");
-  }
-  require_different_baselines(others);
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    require_equal_sizes(reference, "reference image", *others[k].photograph,
-                        fmt::format("image {}", k + 1));
-  }
-}
-
-/// Prepares the input of the reference's chain.
-void StereoMatcher::prepare_several(MapTask& task, std::span<const OtherView> others,
-                                    std::span<const IntensityChanges> changes,
-                                    Prepared& prepared) const {
-  const Photograph& reference = *task.image;
-  const auto geometry =
-      candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
-  prepared.images.resize(others.size() + 1);
-  prepared.images[0].prepare(reference, prepared.parameters, geometry, {true, false, false},
-                             execution_);
-  task.input = {nullptr, prepared.images.data(), {}};
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    CostImage& image = prepared.images[k + 1];
-    const double ratio = others[k].baseline / others.front().baseline;
-    image.prepare(*others[k].photograph, prepared.parameters, geometry,
-                  {.as_reference = false,
-                   .as_partner_of_left = (task.side == Side::kLeft) == (ratio > 0),
-                   .as_partner_of_right = (task.side == Side::kLeft) != (ratio > 0),
-                   .intensity_changes = changes[k],
-                   .phases = sample_phases(ratio, geometry.steps_per_px)},
-                  execution_);
-    task.input.partners.push_back({&image, ratio});
-  }
-}
-
-void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,
-                                  const MatchRequest& request, DisparityMaps& maps,
-                                  MatchReport* report) const {
-  require_several(reference, others);
-  require_usable(request.prior, reference);
-  MatchReport own_report;
-  MatchReport& times = report != nullptr ? *report : own_report;
-  times = {};
-  StageClock clock(times);
-  clock.start("prepare");
-  const auto prepared = prepared_.borrow();
-  prepared->parameters = in_force_.parameters;
-  prepared->parameters.window_levels = 0;  // windows compare two images
-  std::vector<IntensityChanges> changes(others.size());
-  if (exposure_) {
-    clock.start("grey levels");
-    changes = estimate_exposure(reference, others, *prepared, times);
-    clock.start("prepare");
-  }
-  maps = {};
-  const Side side = others.front().baseline > 0 ? Side::kLeft : Side::kRight;
-  MapTask task{.side = side, .image = &reference, .map = &maps.of(side)};
-  task.need = {.whole = true};
-  prepare_several(task, others, changes, *prepared);
-  if (!request.prior.empty() && request.prior.weight > 0) {
-    task.input.prior_px = side == Side::kLeft ? request.prior.left_px : request.prior.right_px;
-    task.input.prior_weight = request.prior.weight;
-  }
-  compute(task, "match", wants_confidence(request), 0, *prepared, clock, times, request.volumes);
-
-  if (!in_force_.refinement) {
-    if (request.unmatched) {
-      mark_unknown(task.map->disparity_px.view(), execution_, task.map->unmatched);
-    }
-    return;
-  }
-  const auto work = refinement_works_.borrow();
-  refine_maps(*in_force_.refinement, to_refine(task, true), nullptr, execution_, *work,
-              [&](std::string_view step) { clock.start(step); });
-}
-
 void StereoMatcher::add_memory_use(MemoryUse& use) const {
-  reduced_.add_memory_use(use);
-  if (exposure_) {
-    exposure_->add_memory_use(use);
+  parts_->reduced.add_memory_use(use);
+  if (parts_->exposure) {
+    parts_->exposure->add_memory_use(use);
   }
-  prepared_.for_each_idle([&use](const Prepared& prepared) {
+  parts_->prepared.for_each_idle([&use](const Prepared& prepared) {
     std::size_t bytes = prepared.pair.grey_8.held_bytes() + prepared.pair.grey_float.held_bytes() +
                         prepared.edges.held_bytes();
     for (const CostImage& image : prepared.images) {
@@ -559,7 +378,7 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
     use.add("prepared images", prepared.halves[0].held_bytes() + prepared.halves[1].held_bytes());
     use.add("symmetric energies", prepared.right_energies.held_bytes());
   });
-  refinement_works_.for_each_idle(
+  parts_->refinement_works.for_each_idle(
       [&use](const RefinementWork& work) { use.add("refinement", held_bytes(work)); });
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -12,22 +11,21 @@
 #include "engine/image/image.h"
 #include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/map_search.h"
 #include "engine/matching/match_inputs.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
-#include "engine/matching/pair_exposure.h"
-#include "engine/matching/previous_maps.h"
-#include "engine/matching/reduced_matcher.h"
 #include "engine/matching/volume/volume_request.h"
-#include "engine/matching/windows/reduced_images.h"
-#include "engine/object_pool.h"
-#include "engine/refinement/refine_maps.h"
 #include "scheduler/strip_plan.h"
+
+namespace vantage::kernels {
+struct CandidateGeometry;
+}
 
 namespace vantage {
 
+class PreviousMaps;
 class StageClock;
+struct MapToRefine;
 
 /// Requested outputs. A map that is not requested may still be computed for the cross-check of the
 /// other one; its contents are undefined. Without `previous`, maps do not depend on whether the
@@ -56,6 +54,9 @@ class StereoMatcher {
  public:
   /// Throws UsageError for invalid options. `execution` must outlive the matcher.
   explicit StereoMatcher(const MatchOptions& options, Execution& execution = default_execution());
+  StereoMatcher(const StereoMatcher&) = delete;
+  StereoMatcher& operator=(const StereoMatcher&) = delete;
+  ~StereoMatcher();
 
   /// left and right: equal size, at least 1×1, any depth and channels; depths may differ. Throws
   /// Error when sizes differ or no pixel has a candidate in the range, UsageError for a prior's
@@ -92,41 +93,10 @@ class StereoMatcher {
   [[nodiscard]] const ResolvedMatchOptions& in_force() const { return in_force_; }
 
  private:
-  /// Inputs prepared for matching, and its working memory.
-  struct Prepared {
-    PreparedPair pair;
-    std::vector<CostImage> images;
-    MethodParameters parameters;  ///< in force, plus the values estimated from the images
-    IntensityChanges of_right;
-    EdgeWeightLevels edges;  ///< of the map being computed
-    MapSearchWork search;
-    /// Coarse maps of the left and the right image for the cross-check.
-    std::array<Image<std::int32_t>, 2> coarse_winners;
-    /// Check maps beside whole maps.
-    std::array<DisparityMap, 2> check_px;
-    /// Symmetric selection: energies of the right image.
-    LevelVolume right_energies;
-    std::array<ReducedImages, 2> halves;  ///< of both images, to find what changed
-  };
-  /// What is computed of an image's map: the map, and what is used to check the other one.
-  struct MapNeed {
-    bool whole = false;   ///< the map, unless check_is_all
-    bool coarse = false;  ///< a coarse level
-    bool check = false;   ///< a check map
-    bool check_is_all = false;
-    [[nodiscard]] bool any() const { return whole || coarse; }
-  };
-  /// One image and the map to compute for it.
-  struct MapTask {
-    Side side;
-    const Photograph* image;
-    MatchedMap* map;
-    MapNeed need = {};
-    ChainInput input = {};
-    CoarseWinners coarse = {};             ///< empty: not needed
-    ImageView<const float> check_px = {};  ///< empty: not needed
-    PreviousMaps* previous = nullptr;      ///< of both maps; null: everything is searched
-  };
+  struct Prepared;
+  struct MapNeed;
+  struct MapTask;
+  struct Parts;
 
   /// Level that maps are checked against; 0: the maps themselves.
   [[nodiscard]] int check_level(scheduler::Extent image) const;
@@ -163,10 +133,7 @@ class StereoMatcher {
 
   const ResolvedMatchOptions in_force_;
   Execution& execution_;
-  std::unique_ptr<PairExposureEstimator> exposure_;  ///< null: nothing is estimated
-  ReducedMatcher reduced_;  ///< for pairs that are searched in reduced images
-  mutable ObjectPool<Prepared> prepared_;
-  mutable ObjectPool<RefinementWork> refinement_works_;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace vantage
