@@ -13,6 +13,7 @@
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/unrectified/rectified_map.h"
+#include "engine/rectification/epipolar_grid.h"
 #include "tests/engine/identical_maps.h"
 
 namespace vantage {
