@@ -18,6 +18,12 @@ ShotTable two_shots() {
   return table;
 }
 
+DepthVideoScale scale_of(DepthVideoScale::Scope scope) {
+  DepthVideoScale scale;
+  scale.scope = scope;
+  return scale;
+}
+
 TEST(DepthPicture, LevelsSpanTheRangeAndZeroIsUnknown) {
   DisparityMap map(6, 1);
   const float values[] = {-2, 10, 4, -50, 50, std::numeric_limits<float>::quiet_NaN()};
@@ -42,13 +48,13 @@ TEST(DepthPicture, RangesAreOfTheFilmTheShotOrGiven) {
     const PreviewRange found = depth_range_of(scale, film, table, frame);
     return std::pair(found.min_px, found.max_px);
   };
-  EXPECT_EQ(range({.scope = Scope::kFilm}, nullptr, 6), std::pair(0.0F, 63.0F));
-  EXPECT_EQ(range({.scope = Scope::kFilm}, &shots, 0), std::pair(-40.0F, 63.0F));
-  EXPECT_EQ(range({.scope = Scope::kShot}, &shots, 4), std::pair(0.0F, 63.0F));
-  EXPECT_EQ(range({.scope = Scope::kShot}, &shots, 5), std::pair(-40.0F, 7.0F));
+  EXPECT_EQ(range(scale_of(Scope::kFilm), nullptr, 6), std::pair(0.0F, 63.0F));
+  EXPECT_EQ(range(scale_of(Scope::kFilm), &shots, 0), std::pair(-40.0F, 63.0F));
+  EXPECT_EQ(range(scale_of(Scope::kShot), &shots, 4), std::pair(0.0F, 63.0F));
+  EXPECT_EQ(range(scale_of(Scope::kShot), &shots, 5), std::pair(-40.0F, 7.0F));
   EXPECT_EQ(range({.scope = Scope::kGiven, .given = {-1, 2}}, &shots, 5), std::pair(-1.0F, 2.0F));
   // One disparity still has a span.
-  const PreviewRange one = depth_range_of({.scope = Scope::kFilm}, {5, 5}, nullptr, 0);
+  const PreviewRange one = depth_range_of(scale_of(Scope::kFilm), {5, 5}, nullptr, 0);
   EXPECT_EQ(one.max_px - one.min_px, 1);
 }
 
