@@ -1,6 +1,7 @@
 // Depths, points and surfaces of disparity maps.
 #include "python/metres.h"
 
+#include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
