@@ -13,6 +13,7 @@
 #include "engine/data_limit.h"
 #include "engine/error.h"
 #include "engine/io/photograph_io.h"
+#include "engine/matching/levels/level_bands.h"
 #include "engine/out_of_memory.h"
 
 namespace vantage::apps {
@@ -111,6 +112,7 @@ void add_input_limit_settings(Settings& settings, ExecutionOptions& execution) {
       limit_memory(*memory_limit);
       constexpr std::size_t kUsualChainBytes = std::size_t{1} << 30;
       execution.chain_memory_bytes = std::min(kUsualChainBytes, *memory_limit / 2);
+      execution.level_memory_bytes = std::min(kDefaultLevelBytes, *memory_limit / 4);
     }
   };
 }

@@ -28,6 +28,10 @@ struct ExecutionOptions {
   /// threads; a target, not a hard limit. Default scheduler::kDefaultMemoryBytes.
   std::optional<std::size_t> chain_memory_bytes = std::nullopt;
 
+  /// Coarse levels of a map whose costs take more are made in bands of rows, which takes longer.
+  /// Default kDefaultLevelBytes.
+  std::optional<std::size_t> level_memory_bytes = std::nullopt;
+
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;
 };

@@ -36,28 +36,16 @@ int pruned_level_count(const MethodParameters& parameters, std::size_t levels) {
 
 int cell_bytes(const MethodParameters& parameters) { return has_likelihoods(parameters) ? 1 : 2; }
 
-/// Reduces the costs of a coarse level to the next coarser one. Rows need no strips, because a cell
-/// reads one block only. regions: of the coarser level, for Bayesian diffusion; null: all.
-void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
-                  const std::vector<scheduler::Region>* regions, LevelVolume& coarser,
-                  Execution& execution) {
+/// Reduces the costs of a coarse level to `rows` of the next coarser one. Rows need no strips,
+/// because a cell reads one block only.
+void reduce_rows(const MethodParameters& parameters, const LevelVolume& finer,
+                 scheduler::Range rows, LevelVolume& coarser, Execution& execution) {
   const bool is_bayes = has_likelihoods(parameters);
   const auto weight = static_cast<float>(parameters.level_weight);
   const double slant_penalty = parameters.slant_penalty / steps_per_px(parameters);
-  if (regions != nullptr) {
-    execution.executor().parallel_for(static_cast<int>(regions->size()), [&](int index) {
-      const scheduler::Region& region = (*regions)[static_cast<std::size_t>(index)];
-      std::vector<std::uint16_t> work(static_cast<std::size_t>(finer.lanes()));
-      for (int y = region.rows.begin; y < region.rows.end; ++y) {
-        reduce_float_energy_row(finer, y, region.columns, weight, slant_penalty, work.data(),
-                                coarser);
-      }
-    });
-    return;
-  }
-  execution.for_each_band(coarser.extent().rows, [&](int first_row, int end_row) {
+  execution.for_each_band(rows.size(), [&](int first_row, int end_row) {
     std::vector<std::uint16_t> work(is_bayes ? static_cast<std::size_t>(finer.lanes()) : 0);
-    for (int y = first_row; y < end_row; ++y) {
+    for (int y = rows.begin + first_row; y < rows.begin + end_row; ++y) {
       if (is_bayes) {
         reduce_float_energy_row(finer, y, {0, coarser.extent().columns}, weight, slant_penalty,
                                 work.data(), coarser);
@@ -67,6 +55,91 @@ void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
     }
   });
 }
+
+/// regions: of the coarser level, for Bayesian diffusion; null: all.
+void reduce_level(const MethodParameters& parameters, const LevelVolume& finer,
+                  const std::vector<scheduler::Region>* regions, LevelVolume& coarser,
+                  Execution& execution) {
+  if (regions == nullptr) {
+    reduce_rows(parameters, finer, coarser.extent().all_rows(), coarser, execution);
+    return;
+  }
+  const auto weight = static_cast<float>(parameters.level_weight);
+  const double slant_penalty = parameters.slant_penalty / steps_per_px(parameters);
+  execution.executor().parallel_for(static_cast<int>(regions->size()), [&](int index) {
+    const scheduler::Region& region = (*regions)[static_cast<std::size_t>(index)];
+    std::vector<std::uint16_t> work(static_cast<std::size_t>(finer.lanes()));
+    for (int y = region.rows.begin; y < region.rows.end; ++y) {
+      reduce_float_energy_row(finer, y, region.columns, weight, slant_penalty, work.data(),
+                              coarser);
+    }
+  });
+}
+
+/// The costs of coarse levels, band by band, from the images.
+class BandedCosts {
+ public:
+  BandedCosts(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
+              const ChainInput& input, const MapOutputs& outputs, CoarseLevels& levels,
+              Execution& execution, const std::function<void(const MatchChain&)>& run)
+      : parameters_(parameters),
+        geometry_(geometry),
+        input_(input),
+        outputs_(outputs),
+        levels_(levels),
+        execution_(execution),
+        run_(run) {}
+
+  /// Makes the costs of the finest level without bands.
+  void make_whole_level() {
+    const int level = levels_.bands().levels + 1;
+    const int end = levels_.costs(level).extent().rows;
+    const int step = levels_.bands().rows_of(level);
+    for (int y = 0; y < end; y += step) {
+      make(level, {y, std::min(y + step, end)});
+    }
+  }
+  /// Runs the chain at `place`, a level with bands.
+  void search(const ChainLevel& place, const kernels::CandidateGeometry& of_level) {
+    const int end = place.costs->extent().rows;
+    const int step = levels_.bands().rows_of(place.number);
+    ChainLevel band = place;
+    for (int y = 0; y < end; y += step) {
+      band.rows = {y, std::min(y + step, end)};
+      const MatchChain chain(parameters_, of_level, input_, outputs_, band);
+      make(place.number, rows_of_source(chain.stages(), *band.rows));
+      run_(chain);
+    }
+  }
+
+ private:
+  /// Makes `rows` of a level, and of those with bands the rows of finer levels that they come from.
+  void make(int level, scheduler::Range rows) {
+    std::vector<scheduler::Range> of_levels(static_cast<std::size_t>(level) + 1, rows);
+    for (int finer = level - 1; finer >= 1; --finer) {
+      const scheduler::Range coarser = of_levels[static_cast<std::size_t>(finer) + 1];
+      of_levels[static_cast<std::size_t>(finer)] = {
+          2 * coarser.begin, std::min(2 * coarser.end, levels_.costs(finer).extent().rows)};
+    }
+    for (int held = 1; held <= std::min(level, levels_.bands().levels); ++held) {
+      levels_.costs(held).hold(of_levels[static_cast<std::size_t>(held)]);
+    }
+    run_(MatchChain(parameters_, geometry_, input_, outputs_,
+                    {.reduced = &levels_.costs(1), .rows = of_levels[1]}));
+    for (int coarser = 2; coarser <= level; ++coarser) {
+      reduce_rows(parameters_, levels_.costs(coarser - 1),
+                  of_levels[static_cast<std::size_t>(coarser)], levels_.costs(coarser), execution_);
+    }
+  }
+
+  const MethodParameters& parameters_;
+  const kernels::CandidateGeometry& geometry_;
+  const ChainInput& input_;
+  const MapOutputs& outputs_;
+  CoarseLevels& levels_;
+  Execution& execution_;
+  const std::function<void(const MatchChain&)>& run_;
+};
 
 CandidateBlocks::SmoothTiles use_of_smooth_tiles(const CheckMap& check_map) {
   using enum CandidateBlocks::SmoothTiles;
@@ -174,11 +247,16 @@ CheckSource search_fine_levels(const MethodParameters& parameters,
 }  // namespace
 
 void CoarseLevels::resize(const MethodParameters& parameters,
-                          const std::vector<scheduler::Extent>& extents, int candidates) {
+                          const std::vector<scheduler::Extent>& extents, int candidates,
+                          LevelBands bands) {
   const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
+  bands_ = bands;
   costs_.resize(extents.size() - 1);
   for (std::size_t i = 0; i < costs_.size(); ++i) {
-    costs_[i].resize(extents[i + 1], lanes, cell_bytes(parameters));
+    costs_[i].describe(extents[i + 1], lanes, cell_bytes(parameters));
+    if (!bands.has(static_cast<int>(i) + 1)) {
+      costs_[i].hold(extents[i + 1].all_rows());
+    }
   }
   winners_.resize(costs_.size());
   window_levels_ = window_level_count(parameters, extents.size());
@@ -235,21 +313,40 @@ std::size_t CoarseLevels::held_bytes() const {
 }
 
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates) {
+                               int candidates, std::size_t memory_bytes) {
   const auto extents = level_extents(extent, parameters.levels);
   const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
   const int windows = window_level_count(parameters, extents.size());
+  const int pruned = pruned_level_count(parameters, extents.size());
   const auto first_result = static_cast<std::size_t>(std::max(1, windows));
+  const LevelBands bands = level_bands(extents, lanes, cell_bytes(parameters), memory_bytes);
+  const auto bytes_of = [&](std::size_t level, int rows, int of_lanes) {
+    return static_cast<std::size_t>(extents[level].columns) * static_cast<std::size_t>(rows) *
+           static_cast<std::size_t>(of_lanes * cell_bytes(parameters));
+  };
   std::size_t bytes = 0;
+  std::array<std::size_t, 2> results = {0, 0};  // levels share the memory of two
   for (std::size_t level = 1; level < extents.size(); ++level) {
-    const std::size_t of_level = static_cast<std::size_t>(extents[level].columns) *
-                                 static_cast<std::size_t>(extents[level].rows) *
-                                 static_cast<std::size_t>(lanes * cell_bytes(parameters));
-    const bool has_result = level >= first_result && level < first_result + 2;
-    const bool is_shared = level == 1 && can_share_costs(parameters);
-    bytes += (1 + (has_result ? 1 : 0) + (is_shared ? 1 : 0)) * of_level;
+    // A band, the rows around it that its iterations read, and those of the next coarser level.
+    const int number = static_cast<int>(level);
+    const int around = 2 * (1 + parameters.iterations) << std::max(0, bands.levels - number);
+    const int rows = bands.has(number)
+                         ? std::min(extents[level].rows, bands.rows_of(number) + around)
+                         : extents[level].rows;
+    const bool is_shared = level == 1 && can_share_costs(parameters) &&
+                           bytes_of(level, extents[level].rows, candidates) <= kMaxSharedCostBytes;
+    bytes += (is_shared ? 2 : 1) * bytes_of(level, rows, lanes);
+    if (level >= first_result) {
+      const int of_result = number < pruned
+                                ? std::min(lanes, parameters.candidate_blocks *
+                                                      static_cast<int>(kernels::kLaneMultiple))
+                                : lanes;
+      results[level % 2] =
+          std::max(results[level % 2], bytes_of(level, extents[level].rows, of_result));
+    }
   }
-  if (extents.size() > 1 && (windows > 0 || pruned_level_count(parameters, extents.size()) > 0)) {
+  bytes += results[0] + results[1];
+  if (extents.size() > 1 && (windows > 0 || pruned > 0)) {
     // Winners of level 1; with two levels of windows also its state.
     constexpr std::size_t kState =
         sizeof(kernels::WindowCells) + 2 * sizeof(std::int16_t) + sizeof(float);
@@ -277,7 +374,15 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
   const auto extents =
       level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
   const int coarsest = static_cast<int>(extents.size()) - 1;
-  levels.resize(parameters, extents, geometry.count);
+  const bool may_have_bands =
+      parts == nullptr && volumes.empty() && input.sharing == CostSharing::kNone;
+  levels.resize(
+      parameters, extents, geometry.count,
+      may_have_bands
+          ? level_bands(extents, geometry.lanes(), cell_bytes(parameters),
+                        execution.options().level_memory_bytes.value_or(kDefaultLevelBytes))
+          : LevelBands());
+  BandedCosts banded(parameters, geometry, input, outputs, levels, execution, run);
   const auto parts_of = [parts](int level) {
     return parts != nullptr ? parts->of(level) : nullptr;
   };
@@ -285,6 +390,8 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     const scheduler::Span span("reduce");
     if (input.sharing == CostSharing::kUses) {
       levels.use_other_costs();
+    } else if (levels.bands().levels > 0) {
+      banded.make_whole_level();
     } else {
       run(MatchChain(
           parameters, geometry, input, outputs,
@@ -293,7 +400,7 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
                input.sharing == CostSharing::kStores ? &levels.start_other_costs() : nullptr,
            .regions = parts != nullptr ? &parts->of(1)->costs : nullptr}));
     }
-    for (int level = 2; level <= coarsest; ++level) {
+    for (int level = std::max(2, levels.bands().levels + 2); level <= coarsest; ++level) {
       const auto* const of_level = parts_of(level);
       reduce_level(parameters, levels.costs(level - 1),
                    of_level != nullptr ? &of_level->costs : nullptr, levels.costs(level),
@@ -344,7 +451,11 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
       place.regions = &of_map;
     }
     place.volume = find_writer(volumes, VolumeKind::kAggregated, level);
-    run(MatchChain(parameters, of_level, input, outputs, place));
+    if (levels.bands().has(level)) {
+      banded.search(place, of_level);
+    } else {
+      run(MatchChain(parameters, of_level, input, outputs, place));
+    }
     cells.finest_level = place.blocks != nullptr
                              ? place.blocks->cells()
                              : static_cast<double>(extent.columns) * extent.rows * geometry.count;

@@ -11,6 +11,7 @@
 #include "engine/image/image.h"
 #include "engine/matching/fine_windows.h"
 #include "engine/matching/levels/candidate_blocks.h"
+#include "engine/matching/levels/level_bands.h"
 #include "engine/matching/levels/level_volume.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/searched_parts.h"
@@ -24,13 +25,15 @@ namespace vantage {
 class CoarseLevels {
  public:
   /// `extents`: sizes of the levels, the image's own first.
+  /// bands: costs of their levels have no memory yet.
   void resize(const MethodParameters& parameters, const std::vector<scheduler::Extent>& extents,
-              int candidates);
+              int candidates, LevelBands bands);
 
   /// level ≥ 1.
   [[nodiscard]] LevelVolume& costs(int level) {
     return costs_[static_cast<std::size_t>(level) - 1];
   }
+  [[nodiscard]] LevelBands bands() const { return bands_; }
   /// Resizes the costs of level 1 of the other image's map.
   LevelVolume& start_other_costs();
   /// Those become the costs of level 1. Sizes must be the same.
@@ -70,6 +73,7 @@ class CoarseLevels {
   [[nodiscard]] int pruned_levels() const { return static_cast<int>(blocks_.size()); }
 
   std::vector<LevelVolume> costs_;
+  LevelBands bands_;
   LevelVolume other_costs_;  ///< empty unless shared
   std::array<LevelVolume, 2> results_;
   std::vector<CandidateBlocks> blocks_;             ///< of pruned levels
@@ -86,8 +90,9 @@ struct LevelCells {
 };
 
 /// Bytes of CoarseLevels for images of `extent` and `candidates` disparities; 0 for one level.
+/// memory_bytes: see level_bands().
 std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates);
+                               int candidates, std::size_t memory_bytes = kDefaultLevelBytes);
 
 /// The map of a coarse level, in addition to the image's own or instead of it.
 struct CoarseMap {
@@ -121,10 +126,10 @@ bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent)
 /// same on all levels. The finest level's costs are computed from the images twice and never
 /// stored. Iterations and σP depend on the level (at_level).
 ///
-/// `run` is called with one chain after the other: the first reduces the image's costs unless
-/// stored ones are used (ChainInput::sharing), the last, without windows, selects winners into
-/// `outputs`. parameters.levels > 1; geometry and outputs are
-/// the image's; input without ChainInput::pair.
+/// `run` is called with one chain after the other: the first reduces the image's costs (or a band
+/// of them, LevelBands) unless stored ones are used (ChainInput::sharing), the last, without
+/// windows, selects winners into `outputs`. parameters.levels > 1; geometry and outputs are the
+/// image's; input without ChainInput::pair.
 ///
 /// With parameters.candidate_blocks > 0 the finest `pruned_levels` levels (never the coarsest)
 /// process only a few candidate blocks per tile (CandidateBlocks), near the winners of the next

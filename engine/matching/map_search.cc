@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -43,6 +44,26 @@ scheduler::ChainPlan chain_plan(const MatchChain& chain, const ExecutionOptions&
 }
 
 namespace {
+
+/// `rows` of the last stage, in strips about as wide as those of `plan`, but in one pass.
+std::vector<scheduler::Region> strips_of(scheduler::Chain chain, scheduler::Range rows,
+                                         const scheduler::ChainPlan& plan) {
+  int reach = 0;
+  for (const scheduler::RowReach& of_stage : scheduler::row_reaches(chain)) {
+    reach += of_stage.below;
+  }
+  constexpr int kColumnsPerReach = 12;  // columns of both halos are a sixth
+  int columns = kColumnsPerReach * reach;
+  for (const scheduler::PassPlan& pass : plan.passes) {
+    columns = std::max(columns, pass.strip_columns);
+  }
+  std::vector<scheduler::Region> strips;
+  const int width = chain.back()->extent().columns;
+  for (int x = 0; x < width; x += columns) {
+    strips.push_back({{x, std::min(x + columns, width)}, rows});
+  }
+  return strips;
+}
 
 /// `geometry` with the candidates that any of `partners` sees.
 kernels::CandidateGeometry seen_by_any(kernels::CandidateGeometry geometry,
@@ -185,6 +206,11 @@ void MapSearch::run_chain(const MatchChain& chain) {
   }
   report_.plan = chain_plan(chain, execution_.options(), execution_.executor().thread_count(),
                             execution_.machine());
+  if (chain.rows()) {
+    scheduler::run_regions(chain.stages(), strips_of(chain.stages(), *chain.rows(), report_.plan),
+                           execution_.executor(), execution_.scratch());
+    return;
+  }
   scheduler::run_strips(chain.stages(), report_.plan, execution_.executor(), execution_.scratch());
 }
 

@@ -47,10 +47,9 @@ bool can_share_costs(const MethodParameters& parameters) {
 
 bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
                   scheduler::Extent image, int candidates) {
-  constexpr double kMaxStoredBytes = 16.0 * 1024 * 1024;
   const scheduler::Extent level = coarser_extent(image);
   const double stored_bytes = 0.5 * candidates * level.columns * level.rows;
-  return can_share_costs(parameters) && stored_bytes <= kMaxStoredBytes &&
+  return can_share_costs(parameters) && stored_bytes <= kMaxSharedCostBytes &&
          input.partners.size() == 1 && input.prior_px.empty() &&
          input.partners.front().baseline_ratio == 1 && input.grid == nullptr;
 }
@@ -141,7 +140,8 @@ MatchChain::MatchChain(const MethodParameters& parameters,
     : geometry_(geometry),
       outputs_(outputs),
       height_(level.costs != nullptr ? level.costs->extent().rows : outputs.disparity_px.height()),
-      regions_(level.regions != nullptr ? std::optional(*level.regions) : std::nullopt) {
+      regions_(level.regions != nullptr ? std::optional(*level.regions) : std::nullopt),
+      rows_(level.rows) {
   const bool is_cost_volume = level.volume != nullptr && level.volume->kind() == VolumeKind::kCosts;
   if (input.pair != nullptr && !is_cost_volume) {
     add_column_ssd(parameters, input, level);

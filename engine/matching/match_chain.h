@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -86,6 +87,9 @@ struct ChainLevel {
   Image<std::int32_t>* winners = nullptr;
   /// The only parts of the outputs to make; null: all.
   const std::vector<scheduler::Region>* regions = nullptr;
+  /// The only rows of the outputs to make, instead of `regions`; empty: all. With `result` or
+  /// `reduced`.
+  std::optional<scheduler::Range> rows = std::nullopt;
   /// Takes the level's cells: aggregated ones in addition to the other outputs, costs instead of
   /// them. Null: not requested.
   const VolumeWriter* volume = nullptr;
@@ -94,6 +98,7 @@ struct ChainLevel {
 /// Whether the costs of both images' coarse levels can be reduced together, in the method and in
 /// the search of `input` over so many candidates. Larger images make them one after the other: what
 /// is stored for the second one would be too much memory.
+inline constexpr std::size_t kMaxSharedCostBytes = std::size_t{16} << 20;
 bool can_share_costs(const MethodParameters& parameters);
 bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
                   scheduler::Extent image, int candidates);
@@ -153,6 +158,8 @@ class MatchChain {
   [[nodiscard]] const std::vector<scheduler::Region>* regions() const {
     return regions_ ? &*regions_ : nullptr;
   }
+  /// ChainLevel::rows.
+  [[nodiscard]] std::optional<scheduler::Range> rows() const { return rows_; }
 
  private:
   void add(std::unique_ptr<scheduler::RowStage> stage);
@@ -201,6 +208,7 @@ class MatchChain {
   MapOutputs outputs_;
   int height_;  ///< of the level
   std::optional<std::vector<scheduler::Region>> regions_;
+  std::optional<scheduler::Range> rows_;
   float half_scale_ = 1;  ///< of volumes that hold energies
   int first_iteration_ = 0;
   int iterations_ = 0;

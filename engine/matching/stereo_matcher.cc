@@ -13,6 +13,7 @@
 #include "engine/error.h"
 #include "engine/matching/candidate_geometry.h"
 #include "engine/matching/levels/level_extents.h"
+#include "engine/matching/match_memory.h"
 #include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stage_clock.h"
 #include "engine/matching/stereo_matcher_parts.h"
@@ -260,6 +261,19 @@ MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const 
           .kept = task.previous != nullptr ? &task.previous->of(task.side).refinement : nullptr};
 }
 
+/// Throws Error where a match cannot succeed.
+void StereoMatcher::require_memory(const Photograph& image) const {
+  const std::string obstacle = memory_obstacle(
+      in_force_,
+      {.image = {image.width(), image.height()},
+       .channels = image.channels(),
+       .level_bytes = execution_.options().level_memory_bytes.value_or(kDefaultLevelBytes)},
+      execution_.machine().memory_bytes);
+  if (!obstacle.empty()) {
+    throw Error(obstacle);
+  }
+}
+
 /// Throws UsageError where maps cannot keep anything from the pair before.
 void StereoMatcher::require_reuse(const MatchRequest& request, bool uses_prior) const {
   const std::string_view obstacle = uses_prior                 ? "a prior"
@@ -288,6 +302,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   times = {};
   StageClock clock(times);
   clock.start("prepare");
+  require_memory(left);
   if (search_reductions(in_force_, {left.width(), left.height()}) > 0) {
     if (uses_prior) {
       throw UsageError("there is a prior, expected none with a reduced search-size");
@@ -344,6 +359,11 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
             request.volumes);
     compute(of_right, "match right", confidence, check_level, *prepared, clock, times,
             request.volumes);
+  }
+  if (prepared->search.levels.bands().levels > 0) {
+    // Of very large images: refinement needs the memory.
+    prepared->search = {};
+    prepared->images.clear();
   }
 
   if (!in_force_.refinement) {

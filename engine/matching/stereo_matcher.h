@@ -59,7 +59,8 @@ class StereoMatcher {
   ~StereoMatcher();
 
   /// left and right: equal size, at least 1×1, any depth and channels; depths may differ. Throws
-  /// Error when sizes differ or no pixel has a candidate in the range, UsageError for a prior's
+  /// Error when sizes differ, no pixel has a candidate in the range or the machine has too little
+  /// memory, UsageError for a prior's
   /// weight out of range, a prior with a vertical search, or a volume that cannot be had: of a
   /// level that the images do not have, or with a reduced search-size.
   void match(const Photograph& left, const Photograph& right, const MatchRequest& request,
@@ -104,6 +105,7 @@ class StereoMatcher {
   [[nodiscard]] bool uses_check_maps(scheduler::Extent image) const;
   [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
                                                   scheduler::Extent image) const;
+  void require_memory(const Photograph& image) const;
   void require_reuse(const MatchRequest& request, bool uses_prior) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
   void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared,

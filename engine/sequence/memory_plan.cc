@@ -8,9 +8,8 @@
 
 #include "engine/error.h"
 #include "engine/matching/coarse_to_fine.h"
-#include "engine/matching/costs/cost_image.h"
+#include "engine/matching/match_memory.h"
 #include "engine/matching/reduced_matcher.h"
-#include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/three_step_synthesizer.h"
@@ -104,31 +103,12 @@ std::size_t rectification_bytes(const SequenceOptions& options, const PairShape&
               : 0);
 }
 
-/// Matching one frame, except its strips: images for the costs, coarse levels.
+/// Matching one frame, except its strips.
 std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) {
-  const scheduler::Extent extent{shape.source.width_px, shape.source.height_px};
-  if (options.baselines.empty() && search_reductions(options.match.in_force(), extent) > 0) {
-    return ReducedMatcher::working_bytes(options.match.in_force(), extent);
-  }
-  const std::size_t pixels = pixels_of(shape.source);
-  const std::size_t channels = options.match.resolved().colour == ColourUse::kChannels
-                                   ? static_cast<std::size_t>(shape.channels)
-                                   : 1;
-  // Levels with lower and upper bounds or gradients, of both images, and mirrored copies.
-  std::size_t planes = 4 * 2;
-  for (std::size_t k = 1; k < options.baselines.size(); ++k) {
-    planes +=
-        4 * static_cast<std::size_t>(sample_phases(options.baselines[k] / options.baselines.front(),
-                                                   steps_per_px(options.match.resolved())));
-  }
-  constexpr std::size_t kCheckedMaps = 2;  // of coarse levels
-  const int check_level = options.match.resolved_refinement().cross_check_level;
-  const int candidates = candidate_count(options.match.disparities, options.match.resolved());
-  return pixels * channels * planes * sizeof(float) +
-         (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
-         edge_weight_bytes(options.match.resolved(), pixels) +
-         coarse_level_bytes(options.match.resolved(), extent, candidates) +
-         symmetric_energy_bytes(options.match.resolved(), extent, candidates);
+  return matching_bytes(options.match.in_force(),
+                        {.image = {shape.source.width_px, shape.source.height_px},
+                         .channels = shape.channels,
+                         .baselines = options.baselines});
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {
