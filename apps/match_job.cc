@@ -200,10 +200,9 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
 
 std::vector<std::string> MatchJob::written_maps() const {
   std::vector<std::string> files;
-  for (const std::string* file :
-       {&output, &output_right, &confidence, &unmatched, &unmatched_right, &preview,
-        &posterior_mean, &posterior_variance, &cyclopean, &cyclopean_occlusion,
-        &depth.resolution_file}) {
+  for (const std::string* file : {&output, &output_right, &confidence, &unmatched, &unmatched_right,
+                                  &preview, &posterior_mean, &posterior_variance, &cyclopean,
+                                  &cyclopean_occlusion, &depth.resolution_file}) {
     if (!file->empty()) {
       files.push_back(*file);
     }

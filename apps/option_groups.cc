@@ -50,7 +50,8 @@ void add_synthesis_settings(Settings& settings, SynthesisOptions& options) {
   settings.choice<WarpColour>(
       "warp", options.warp, {{"one-pass", WarpColour::kOnePass}, {"forward", WarpColour::kForward}},
       "Colours of views. one-pass: one bicubic interpolation of the photograph; forward: whole "
-      "pixels are moved, as in Scharstein's book (with cameras: between rectification and its inverse)");
+      "pixels are moved, as in Scharstein's book (with cameras: between rectification and its "
+      "inverse)");
   add_holes_setting(settings, options.holes);
   add_soft_edges_setting(settings, options.soft_edges);
   add_combining_settings(settings, options);

@@ -49,7 +49,8 @@ inline constexpr std::string_view kComfortSources[] = {
     "Vertical error, exchanged images, colour difference: the defects are described by D. Vatolin, "
     "A. Bokov, M. Erofeev, V. Napadovsky, Trends in S3D-movie quality evaluated on 105 films using "
     "10 metrics, Electronic Imaging, 2016. The limits are ours: 0.1 % of the height is one line of "
-    "1080, about one minute of arc from three picture heights; a shot is exchanged if hidden pixels "
+    "1080, about one minute of arc from three picture heights; a shot is exchanged if hidden "
+    "pixels "
     "belong to the wrong side in more than two thirds of at least 100 places."};
 
 }  // namespace vantage

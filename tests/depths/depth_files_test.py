@@ -228,7 +228,7 @@ class DepthFiles(unittest.TestCase):
         with open("short.txt", "w") as file:
             file.write("1 0 0 0 0 1 0 0 0 0 1 0\n")
         error = vantage(*run, "-o", "none", "--poses", "short.txt", fails=True)
-        self.assertIn("short.txt: has 1 poses, expected one for pair 1", error)
+        self.assertIn("short.txt: has 1 poses, expected one for each pair from 0 to 1", error)
         error = vantage(*run[:6], "depth", *run[7:9], "-o", "none", "--poses", "tum.txt",
                         fails=True)
         self.assertIn("--poses has no effect where --save has no cloud, mesh", error)

@@ -27,8 +27,8 @@ struct ResolvedMatchOptions {
   std::optional<RefinementOptions> refinement;  ///< empty: maps keep the winners
 };
 
-/// Everything that determines a pair's disparity maps. Defaults are those of the command line, where
-/// only `disparities` differs: it is automatic there.
+/// Everything that determines a pair's disparity maps. Defaults are those of the command line,
+/// where only `disparities` differs: it is automatic there.
 struct MatchOptions {
   /// Empty: that of the preset in force. Cannot be combined with `preset`.
   std::optional<MatchMethod> method;
