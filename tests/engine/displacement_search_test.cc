@@ -495,6 +495,7 @@ TEST(DisplacementSearchOfMethods, OfOneVerticalDisparityOf0IsASearchAlongRows) {
     options.parameters.subpixel = Subpixel::kNone;
     if (options.preset) {
       options.parameters.candidate_blocks = 0;
+      options.parameters.slant_penalty = std::numeric_limits<double>::infinity();
     }
     const DisparityMaps expected = maps_of(pair, options, execution);
     options.disparities_y = {0, 0};
