@@ -80,7 +80,7 @@ void check(const AspJob& job, const Settings& settings) {
   check_common_files(job.common, files);
 }
 
-/// Of both signs; empty: the images have nothing in common.
+/// Range of disparities of both signs. Empty if no points of the images match.
 std::optional<DisparityRange> found_range(const Photograph& left, const Photograph& right,
                                           Execution& execution) {
   // Each search covers more on one side of 0.

@@ -21,7 +21,7 @@ void choose_kitti_cameras(const Settings& settings, const CommonOptions& common,
   if (calibration.empty() || cameras) {
     return;
   }
-  // Of an OpenCV file with P1 and P2 or Q alone, this reads the cameras of rectified images, too.
+  // Also reads OpenCV files with only P1 and P2, or only Q: cameras of rectified images.
   const StereoCalibration read = read_stereo_calibration(calibration);
   if (!read.kitti_cameras) {
     return;

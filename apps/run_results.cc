@@ -65,8 +65,9 @@ void print_processor_time(const SequenceReport& sequence) {
        100 * sequence.share_busy);
 }
 
-/// Of all delivered frames: nearest and farthest disparity of any, median of their medians; then
-/// each frame. Null where no disparity is known.
+/// Depth resolution in the report: over all delivered frames the values at the nearest and the
+/// farthest disparity and the median of the frames' medians, then the values of each frame. Null
+/// where no disparity is known.
 SettingValue depth_resolution_of(const RunJob& job, const RunSession& session,
                                  const DeliveredFrames& delivered) {
   SettingValue frames = SettingValue::array();

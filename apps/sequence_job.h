@@ -28,8 +28,8 @@ struct SequenceJob {
   /// Empty: the disparity map, and the views if there are any.
   std::optional<std::vector<SequenceOutput>> save;
   SequenceViews views;
-  /// Of sequence.search_range_per_shot; empty: per shot for depth videos and comfort, if no range
-  /// is given and frames are independent.
+  /// Sets sequence.search_range_per_shot. Empty: true for depth videos and comfort if no range is
+  /// given and frames are independent.
   std::optional<bool> search_range_per_shot;
   std::optional<FrameRange> frames;   ///< of the input
   std::optional<int> step_of_frames;  ///< N of --frames A-B:N

@@ -123,7 +123,6 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
     p.edge_diffusion = 2;
     p.prior_growth = 1.2;
     p.level_weight = 0.6;
-    p.slant_penalty = 0.5;
     p.epsilon_prior = 5e-6;
   });
   add("bayes_edges_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
