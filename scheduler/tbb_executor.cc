@@ -9,8 +9,6 @@
 #include <oneapi/tbb/version.h>
 #include <optional>
 
-#include "scheduler/helper_arrival.h"
-
 namespace vantage::scheduler {
 namespace {
 
@@ -29,7 +27,6 @@ class TbbExecutor final : public Executor {
   [[nodiscard]] int thread_count() const override { return arena_.max_concurrency(); }
 
   void parallel_for(int task_count, const std::function<void(int)>& body) override {
-    const HelperArrival::Work work(helpers_, task_count > 1 && thread_count() > 1);
     // One task per index: a task is a strip of a frame, long enough to be stolen alone. A thread
     // that waits here may take work of another frame: no task waits while it holds scratch.
     arena_.execute([&] {
@@ -38,7 +35,6 @@ class TbbExecutor final : public Executor {
           [&](const tbb::blocked_range<int>& tasks) {
             for (int task = tasks.begin(); task != tasks.end(); ++task) {
               body(task);
-              helpers_.note_task();
             }
           },
           tbb::simple_partitioner());
@@ -46,7 +42,6 @@ class TbbExecutor final : public Executor {
   }
 
   void run_frame_steps(int in_flight, const FrameSteps& steps) override {
-    const HelperArrival::Work work(helpers_, false);
     // The pipeline has at most `in_flight` tokens and its last filter is in order, so frame
     // i − in_flight has been written before frame i is read: slots are free when reused.
     const tbb::filter_mode compute_mode =
@@ -79,7 +74,6 @@ class TbbExecutor final : public Executor {
   }
 
  private:
-  HelperArrival helpers_;
   std::optional<tbb::global_control> limit_;
   tbb::task_arena arena_;
 };
