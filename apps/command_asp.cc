@@ -65,6 +65,11 @@ void check(const AspJob& job, const Settings& settings) {
     throw UsageError(fmt::format("--{} is set alone, expected both --disp-min and --disp-max",
                                  job.min_px ? "disp-min" : "disp-max"));
   }
+  constexpr int kMaxDisparity_px = 65535;  // as MatchOptions has it, with the other sign
+  if (job.min_px && (*job.min_px < -kMaxDisparity_px || *job.max_px > kMaxDisparity_px)) {
+    throw UsageError(fmt::format("--disp-min is {} and --disp-max {}, expected numbers within ±{}",
+                                 *job.min_px, *job.max_px, kMaxDisparity_px));
+  }
   if (job.min_px && *job.min_px > *job.max_px) {
     throw UsageError(fmt::format("--disp-min is {} and --disp-max {}, expected the smaller first",
                                  *job.min_px, *job.max_px));
@@ -107,7 +112,7 @@ std::optional<DisparityRange> range_of(const AspJob& job, const Photograph& left
                                                     : DisparityRange{*job.min_px, *job.max_px};
 }
 
-/// How the map came about, for people; empty where there is nothing to match.
+/// Computes `map`. Returns why there is nothing to match; empty: `map` is computed.
 std::string match(const AspJob& job, const DisparityMap& left, const DisparityMap& right,
                   Execution& execution, RunReport& report, DisparityMap& map) {
   if (!has_data(left.view()) || !has_data(right.view())) {

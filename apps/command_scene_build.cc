@@ -78,7 +78,7 @@ void check_files(const SceneBuildJob& job, const Settings& settings,
   check_common_files(job.common, files);
 }
 
-SettingValue describe_edge(const SceneBuilder::BuiltEdge& built, SettingValue rectification) {
+SettingValue describe_edge(const BuiltEdge& built, SettingValue rectification) {
   const StoredEdge& edge = built.stored;
   if (!built.refusal.empty()) {
     return {{"first", edge.edge.first},

@@ -60,19 +60,14 @@ void add_known_distance(Settings& settings, std::optional<KnownDistance>& distan
       distance.reset();
       return;
     }
-    const auto parts = split(to_text(value), ':');
-    try {
-      if (parts.size() == 3) {
-        const KnownDistance given{to_integer(parts[0]), to_integer(parts[1]), to_number(parts[2])};
-        if (given.first >= 0 && given.second >= 0 && given.first != given.second &&
-            given.metres > 0 && std::isfinite(given.metres)) {
-          distance = given;
-          return;
-        }
-      }
-    } catch (const UsageError&) {  // the message below says more
-    }
-    reject_value(value, "two different images and a length above 0 such as 0:3:0.25, or auto");
+    constexpr const char* kExpected =
+        "two different images and a length above 0 such as 0:3:0.25, or auto";
+    distance = from_parts(value, ':', 3, kExpected, [](const auto& parts) {
+      const KnownDistance given{to_integer(parts[0]), to_integer(parts[1]), to_number(parts[2])};
+      const bool is_valid = given.first >= 0 && given.second >= 0 && given.first != given.second &&
+                            given.metres > 0 && std::isfinite(given.metres);
+      return is_valid ? std::optional(given) : std::nullopt;
+    });
   };
   setting.get = [&distance]() -> SettingValue {
     return distance ? fmt::format("{}:{}:{}", distance->first, distance->second, distance->metres)
@@ -237,7 +232,6 @@ SettingValue results_of(const ScenePosesJob& job, const std::vector<fs::path>& f
 
 void print_results(const ScenePosesJob& job, const std::vector<fs::path>& files,
                    const CameraEstimate& estimate) {
-  std::vector<std::string> lines;
   const auto print_some = [](const std::vector<std::string>& all) {
     for (std::size_t i = 0; i < std::min(all.size(), kLinesPrinted); ++i) {
       tell("scene poses: {}\n", all[i]);

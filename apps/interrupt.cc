@@ -53,11 +53,15 @@ void remove_files_on_signals() {
 }
 
 const std::atomic<bool>& interrupt_flag() {
-  for (const int signal : kEndingSignals) {
-    if (signal != SIGHUP || !is_ignored(signal)) {  // nohup has asked to go on
-      handle(signal, raise_flag);
+  // Once: a later call must not take back what the first signal has set.
+  [[maybe_unused]] static const bool is_handled = [] {
+    for (const int signal : kEndingSignals) {
+      if (signal != SIGHUP || !is_ignored(signal)) {  // nohup has asked to go on
+        handle(signal, raise_flag);
+      }
     }
-  }
+    return true;
+  }();
   return interrupted;
 }
 

@@ -22,7 +22,7 @@ constexpr std::size_t kMaxWarnings = 5;
 SceneRectification::SceneRectification(const SceneBuilder& builder, const MatchOptions& options)
     : builder_(builder), expects_negative_disparities_(expects_negative_disparities(options)) {}
 
-SettingValue SceneRectification::add(const SceneBuilder::BuiltEdge& edge) {
+SettingValue SceneRectification::add(const BuiltEdge& edge) {
   if (!edge.refusal.empty()) {
     warnings_.push_back({std::numeric_limits<double>::infinity(),
                          fmt::format("edge {}-{} is left out: {}", edge.stored.edge.first,
@@ -62,7 +62,7 @@ void SceneRectification::print_warnings() const {
                    [](const Warning& a, const Warning& b) { return a.severity > b.severity; });
   const std::size_t printed = std::min(worst.size(), kMaxWarnings);
   for (std::size_t i = 0; i < printed; ++i) {
-    tell("scene build: warning: {}\n", worst[i].text);
+    tell("scene build: warning: {}\n", with_dashes(worst[i].text));
   }
   if (worst.size() > printed) {
     tell("scene build: warning: {} more of these; --report lists all\n", worst.size() - printed);

@@ -17,7 +17,7 @@ class SceneRectification {
   SceneRectification(const SceneBuilder& builder, const MatchOptions& options);
 
   /// The report entry of an edge; null if nothing is known.
-  SettingValue add(const SceneBuilder::BuiltEdge& edge);
+  SettingValue add(const BuiltEdge& edge);
 
   /// Prints one warning for each of the worst few edges whose row or column error is too large or
   /// whose images look exchanged, and the number of the others.

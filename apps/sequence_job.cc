@@ -32,16 +32,10 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
                                   "Positions of the two views of the stereo output, in baselines; "
                                   "0,1: the photographs themselves");
   setting.set = [&views_x](const SettingValue& value) {
-    const auto parts = split(to_text(value), ',');
-    try {
-      if (parts.size() == 2) {
-        views_x = {to_number(parts[0]), to_number(parts[1])};
-        return;
-      }
-    } catch (const UsageError&) {
-      // reported below
-    }
-    reject_value(value, "two positions on the baseline such as 0.25,0.75");
+    views_x = from_parts(
+        value, ',', 2, "two positions on the baseline such as 0.25,0.75", [](const auto& parts) {
+          return std::optional(std::array{to_number(parts[0]), to_number(parts[1])});
+        });
   };
   setting.get = [&views_x] { return fmt::format("{},{}", views_x[0], views_x[1]); };
 }

@@ -10,8 +10,8 @@ namespace vantage {
 std::size_t data_bytes();
 
 /// While it lives, the soft RLIMIT_DATA of the process does not apply; then it is higher by what
-/// the process took meanwhile. For opening libraries: they do not count for --memory, and some end
-/// the process where they get none.
+/// the process took meanwhile. For opening libraries: they do not count for the user's limit, and
+/// some end the process where they get no memory. Thread rule: one object at a time.
 class UnlimitedData {
  public:
   UnlimitedData();

@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <mutex>
 #include <utility>
 
 #include "engine/data_limit.h"
@@ -12,6 +13,8 @@ namespace vantage {
 namespace {
 
 void* open_library(const std::string& file_name) {
+  static std::mutex opening;  // the limit is that of the process
+  const std::scoped_lock lock(opening);
   const UnlimitedData unlimited;
   return ::dlopen(file_name.c_str(), RTLD_NOW | RTLD_LOCAL);
 }

@@ -30,12 +30,6 @@
 #include "engine/matching/unrectified/unrectified_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
 
-// Depths and points of disparity maps.
-#include "engine/io/depth_io.h"
-#include "engine/reprojection/map_camera.h"
-#include "engine/reprojection/ply_file.h"
-#include "engine/reprojection/point_cloud.h"
-
 // Cameras, and unrectified pairs.
 #include "engine/rectification/feature_matches.h"
 #include "engine/rectification/improved_rectification.h"

@@ -17,10 +17,11 @@ std::atomic_flag& unfinished_lock() {
   return flag;
 }
 
-/// Never destroyed: a signal may come while the process exits.
-std::multiset<std::string>& unfinished() {
-  static auto* const names = new std::multiset<std::string>();
-  return *names;
+/// Null before the first file: a handler must not take memory. Never destroyed: a signal may come
+/// while the process exits.
+std::multiset<std::string>*& unfinished() {
+  static std::multiset<std::string>* names = nullptr;
+  return names;
 }
 
 void lock_unfinished() {
@@ -57,20 +58,29 @@ class UnfinishedAccess {
 
 void note_unfinished(const std::filesystem::path& file) {
   const UnfinishedAccess access;
-  unfinished().insert(file.string());
+  if (unfinished() == nullptr) {
+    unfinished() = new std::multiset<std::string>();
+  }
+  unfinished()->insert(file.string());
 }
 
 void forget_unfinished(const std::filesystem::path& file) {
   const UnfinishedAccess access;
-  const auto known = unfinished().find(file.string());
-  if (known != unfinished().end()) {
-    unfinished().erase(known);
+  if (unfinished() == nullptr) {
+    return;
+  }
+  const auto known = unfinished()->find(file.string());
+  if (known != unfinished()->end()) {
+    unfinished()->erase(known);
   }
 }
 
 void remove_unfinished_files() noexcept {
   lock_unfinished();
-  for (const std::string& file : unfinished()) {
+  if (unfinished() == nullptr) {
+    return;
+  }
+  for (const std::string& file : *unfinished()) {
     ::unlink(file.c_str());
   }
 }

@@ -4,11 +4,11 @@
 
 namespace vantage {
 
-/// The temporary files of this process, known to handlers of signals that end it. Thread rule: all
-/// functions may be called concurrently.
+// The temporary files of this process, known to handlers of signals that end it. Thread rule: all
+// functions may be called concurrently.
 
-/// Call it before the file is created, and once per call forget_unfinished() after it has been
-/// renamed or removed.
+/// Call note_unfinished() before the file is created, and forget_unfinished() once for each call
+/// after the file has been renamed or removed.
 void note_unfinished(const std::filesystem::path& file);
 void forget_unfinished(const std::filesystem::path& file);
 

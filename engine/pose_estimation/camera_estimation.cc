@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <mutex>
 #include <numbers>
 #include <utility>
 
@@ -25,10 +24,11 @@ namespace {
 constexpr double kMaxOffDegrees = 5;
 constexpr double kMaxFinalOffDegrees = 3;
 constexpr int kMinSightings = 12;
-// More do not count more: pairs with repeated patterns have many that agree with a wrong pose.
+// Weights end here: pairs with repeated patterns have many inliers that agree with a wrong pose.
 constexpr std::size_t kInliersOfSurePair = 100;
 constexpr int kMaxPartners = 100;
-// Of the errors of sightings: beyond so many median deviations, but not below, are outliers.
+// Sightings are outliers if their error is above so many times the median error, and above so many
+// pixels.
 constexpr double kOutlierDeviations = 5;
 constexpr double kMinOutlierPx = 1;
 
@@ -44,17 +44,10 @@ ImageSet read_features(const std::vector<std::string>& names,
                        Execution& execution) {
   std::vector<std::optional<ImageFeatures>> found(names.size());
   std::vector<std::pair<int, int>> sizes(names.size());
-  std::mutex telling;
-  int done = 0;
-  execution.executor().parallel_for(static_cast<int>(names.size()), [&](int number) {
-    const auto i = static_cast<std::size_t>(number);
-    const Photograph photograph = load(number);
+  for_each_piece("finding points", names.size(), progress, execution, [&](std::size_t i) {
+    const Photograph photograph = load(static_cast<int>(i));
     sizes[i] = {photograph.width(), photograph.height()};
     found[i].emplace(photograph, options.features);
-    if (progress) {
-      const std::lock_guard lock(telling);
-      progress("finding points", ++done, static_cast<int>(names.size()));
-    }
   });
   ImageSet images{.features = {}, .width_px = sizes[0].first, .height_px = sizes[0].second};
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -197,8 +190,8 @@ double outlier_limit(const Bundle& bundle) {
   return std::max(kMinOutlierPx, kOutlierDeviations * upper_median(std::move(errors)));
 }
 
-/// Leaves out sightings with larger errors, then tracks with fewer than two. The number of
-/// sightings that went.
+/// Removes sightings with larger errors, then tracks with fewer than two sightings. Returns how
+/// many sightings are removed.
 int leave_out(Bundle& bundle, double limit_px) {
   int before = 0;
   int after = 0;

@@ -25,20 +25,6 @@ std::vector<NumberPair> all_pairs(int images) {
   return pairs;
 }
 
-/// Calls body(i) for each of `count`, and tells the progress, one call at a time.
-void for_each_piece(std::string_view step, std::size_t count, const StepProgress& progress,
-                    Execution& execution, const std::function<void(std::size_t)>& body) {
-  std::mutex telling;
-  int done = 0;
-  execution.executor().parallel_for(static_cast<int>(count), [&](int piece) {
-    body(static_cast<std::size_t>(piece));
-    if (progress) {
-      const std::lock_guard lock(telling);
-      progress(step, ++done, static_cast<int>(count));
-    }
-  });
-}
-
 std::vector<NumberPair> likely_pairs(const std::vector<ImageFeatures>& images, int partners,
                                      const StepProgress& progress, Execution& execution) {
   const int count = static_cast<int>(images.size());
@@ -73,6 +59,19 @@ std::vector<NumberPair> likely_pairs(const std::vector<ImageFeatures>& images, i
 }
 
 }  // namespace
+
+void for_each_piece(std::string_view step, std::size_t count, const StepProgress& progress,
+                    Execution& execution, const std::function<void(std::size_t)>& body) {
+  std::mutex telling;
+  int done = 0;
+  execution.executor().parallel_for(static_cast<int>(count), [&](int piece) {
+    body(static_cast<std::size_t>(piece));
+    if (progress) {
+      const std::lock_guard lock(telling);
+      progress(step, ++done, static_cast<int>(count));
+    }
+  });
+}
 
 LensPositions::LensPositions(const std::optional<Camera>& lens, int width_px, int height_px)
     : centre_px_((width_px - 1) / 2.0, (height_px - 1) / 2.0) {

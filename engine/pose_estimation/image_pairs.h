@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -16,6 +17,11 @@ namespace vantage {
 
 /// Told after each piece of work of a step.
 using StepProgress = std::function<void(std::string_view step, int done, int total)>;
+
+/// Calls body(i) for each i below `count`, concurrently, and tells the progress of the step, one
+/// call at a time.
+void for_each_piece(std::string_view step, std::size_t count, const StepProgress& progress,
+                    Execution& execution, const std::function<void(std::size_t)>& body);
 
 /// Positions in photographs of one lens from the principal point, without distortion, in pixels of
 /// fx.

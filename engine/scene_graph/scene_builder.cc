@@ -102,7 +102,7 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
   scene_.width_px = first.width();
   scene_.height_px = first.height();
   find_edges();
-  remove_unfinished_files(folder_, edges_);
+  remove_leftovers(folder_, edges_);
   keep_finished_edges();
 }
 

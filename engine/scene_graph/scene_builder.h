@@ -51,8 +51,6 @@ class SceneBuilder {
   /// Indices into edges() of the edges still to match.
   [[nodiscard]] const std::vector<int>& edges_to_match() const { return edges_to_match_; }
 
-  using BuiltEdge = vantage::BuiltEdge;
-
   /// Matches and stores an edge. Throws Error naming the images, also for those without poses that
   /// the check refuses; nothing of such an edge is stored.
   BuiltEdge build(int edge, MatchReport* report = nullptr);

@@ -96,7 +96,7 @@ bool has_maps(const fs::path& folder, const StoredEdge& edge) {
          is_there(folder, edge.unmatched[0]) && is_there(folder, edge.unmatched[1]);
 }
 
-void remove_unfinished_files(const fs::path& folder, std::span<const SceneEdge> edges) {
+void remove_leftovers(const fs::path& folder, std::span<const SceneEdge> edges) {
   remove_temporary_files_of(folder / "scene.json");
   std::set<std::string> maps;
   for (const SceneEdge& edge : edges) {

@@ -29,7 +29,7 @@ void store_maps(const std::filesystem::path& folder, const DisparityMaps& maps, 
 bool has_maps(const std::filesystem::path& folder, const StoredEdge& edge);
 
 /// Removes unfinished files of a killed process. No other process may use the folder.
-void remove_unfinished_files(const std::filesystem::path& folder, std::span<const SceneEdge> edges);
+void remove_leftovers(const std::filesystem::path& folder, std::span<const SceneEdge> edges);
 
 /// Removes the maps of `before` that no longer belong to the scene.
 void remove_outdated_maps(const std::filesystem::path& folder, const StoredScene& before,

@@ -134,6 +134,8 @@ class Asp(unittest.TestCase):
         cases = [((), [row[:-1] for row in self.whole[1]], "out.tif", "expected equal sizes"),
                  (("--disp-min", "3"), self.whole[1], "out.tif", "expected both"),
                  (("--disp-min=3", "--disp-max=2"), self.whole[1], "out.tif", "smaller first"),
+                 (("--disp-min=-2147483648", "--disp-max=2"), self.whole[1], "out.tif",
+                  "expected numbers within"),
                  ((), self.whole[1], "out.txt", "out.txt"),
                  ((), self.whole[1], "out.png", "PNG holds no gaps"),
                  ((), self.whole[1], "nowhere/out.tif", "nowhere")]
