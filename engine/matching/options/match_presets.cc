@@ -34,7 +34,7 @@ PresetSettings preset_settings(MatchPreset preset) {
   switch (preset) {
     case MatchPreset::kRealtime:
       settings.parameters.search_size = SearchSize::kAuto;
-      settings.parameters.mu = 0.24;
+      settings.parameters.mu = 0.25;
       settings.parameters.iterations = 2;
       settings.parameters.final_iterations = 3;
       settings.parameters.pruned_levels = 4;
