@@ -21,9 +21,6 @@ namespace {
 
 /// Level of the reduced images at which the search of all candidates ends.
 constexpr int kSearchLevel = 1;
-/// SearchSize::kAuto halves the images until at most so many candidates are left per pixel of the
-/// whole image: each reduction leaves an eighth. About equal times for all ranges.
-constexpr int kMaxCandidatesPerPixel = 16;
 constexpr int kMinReducedPx = 16;
 
 ResolvedMatchOptions at_reduction(const ResolvedMatchOptions& options, DisparityRange whole_range,
@@ -94,7 +91,7 @@ int search_reductions(const ResolvedMatchOptions& options, scheduler::Extent ima
       break;
     case SearchSize::kAuto:
       for (int candidates = options.disparities.count();
-           candidates > kMaxCandidatesPerPixel && reductions < 2;
+           candidates > kMaxFullSizeCandidates && reductions < 2;
            candidates = (candidates + 7) / 8) {
         ++reductions;
       }

@@ -25,6 +25,10 @@ namespace vantage {
 
 class StageClock;
 
+/// SearchSize::kAuto halves the images until at most so many candidates are left per pixel of the
+/// whole image: each reduction leaves an eighth. About equal times for all ranges.
+inline constexpr int kMaxFullSizeCandidates = 16;
+
 /// How many times images of this size are halved for the search of these options (search_size); 0:
 /// it is done at full size, as in all images of less than 32 rows or columns.
 int search_reductions(const ResolvedMatchOptions& options, scheduler::Extent image);

@@ -6,6 +6,8 @@
 #include <functional>
 #include <utility>
 
+#include "engine/matching/reduced_matcher.h"
+
 namespace vantage {
 namespace {
 
@@ -67,13 +69,15 @@ class Steps {
 };
 
 Advice about_preset(const Steps& steps, double maps_s, const ProfiledChoices& choices) {
-  if (choices.preset == MatchPreset::kRealtime) {
+  // `realtime` searches few candidates at full size, and is slower than `fast` then.
+  const bool is_few = choices.candidates > 0 && choices.candidates <= kMaxFullSizeCandidates;
+  if (choices.preset && (choices.preset == MatchPreset::kRealtime || is_few)) {
     return {0, ""};
   }
   if (!choices.preset) {
     return {steps.share(maps_s) * (1 - kRealtimeOfBalanced),
-            fmt::format("--preset realtime instead of a method of Scharstein's book: maps take {}.",
-                        steps.text(maps_s))};
+            fmt::format("--preset {} instead of a method of Scharstein's book: maps take {}.",
+                        is_few ? "fast" : "realtime", steps.text(maps_s))};
   }
   const double of_this = realtime_of(*choices.preset);
   return {steps.share(maps_s) * (1 - of_this),

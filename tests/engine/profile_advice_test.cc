@@ -61,6 +61,11 @@ TEST(ProfileAdvice, OnlyWhatTheCommandCouldDoIsSaid) {
       ElementsAre(HasSubstr("256 candidates are searched in 650 ms")));
   EXPECT_THAT(profile_advice(profile, kSteps, {.preset = {}, .candidates = 32}),
               ElementsAre(HasSubstr("--preset realtime instead of a method of Scharstein's book")));
+  // realtime searches 16 candidates at full size.
+  EXPECT_THAT(profile_advice(profile, kSteps, {.preset = {}, .candidates = 16}),
+              ElementsAre(HasSubstr("--preset fast instead of a method of Scharstein's book")));
+  EXPECT_THAT(profile_advice(profile, kSteps, {.preset = MatchPreset::kBalanced, .candidates = 16}),
+              IsEmpty());
   // What takes less than a twentieth is not worth a word.
   EXPECT_THAT(profile_advice(profile, {{"check", 0.04}, {"write", 0.96}},
                              {.preset = MatchPreset::kRealtime, .checks_rows = true}),
