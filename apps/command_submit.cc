@@ -86,6 +86,7 @@ void make_paths_absolute(SubmitJob& job) {
                                      &input.pairs,
                                      &input.sequence,
                                      &job.run.calibration,
+                                     &job.run.unrectified,
                                      &job.run.poses,
                                      &job.run.views.poses.file,
                                      &job.run.views.path.file,

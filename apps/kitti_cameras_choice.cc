@@ -12,6 +12,13 @@ std::string_view numbers_of(KittiCameras cameras) {
   return cameras == KittiCameras::kGrey ? "0 and 1" : "2 and 3";
 }
 
+void tell_of_grey_cameras(const Settings& settings, const std::string& calibration) {
+  tell(
+      "{}: warning: {}: has KITTI's cameras 0 to 3, and 0 and 1 (grey) are used; "
+      "--kitti-cameras 2,3 for images of 2 and 3 (colour)\n",
+      settings.command(), calibration);
+}
+
 }  // namespace
 
 void choose_kitti_cameras(const Settings& settings, const CommonOptions& common,
@@ -40,10 +47,20 @@ void choose_kitti_cameras(const Settings& settings, const CommonOptions& common,
     tell("{}: --kitti-cameras auto is {}\n", settings.command(),
          cameras == KittiCameras::kGrey ? "0,1" : "2,3");
   } else if (read.has_other_cameras) {
-    tell(
-        "{}: warning: {}: has KITTI's cameras 0 to 3, and 0 and 1 (grey) are used; "
-        "--kitti-cameras 2,3 for images of 2 and 3 (colour)\n",
-        settings.command(), calibration);
+    tell_of_grey_cameras(settings, calibration);
+  }
+}
+
+void warn_of_grey_cameras(const Settings& settings, const CommonOptions& common,
+                          const ListColumns& columns, std::optional<KittiCameras> chosen) {
+  if (chosen || common.quiet) {
+    return;
+  }
+  for (const auto& [file, named] : columns.calibrations) {
+    if (!named && read_stereo_calibration(file).has_other_cameras) {
+      tell_of_grey_cameras(settings, file.string());
+      return;
+    }
   }
 }
 

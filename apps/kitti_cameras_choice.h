@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "apps/list_columns.h"
 #include "apps/option_groups.h"
 #include "apps/settings.h"
 #include "engine/rectification/kitti_cameras.h"
@@ -18,5 +19,10 @@ void choose_kitti_cameras(const Settings& settings, const CommonOptions& common,
                           const std::string& calibration,
                           std::span<const std::filesystem::path> images,
                           std::optional<KittiCameras>& cameras);
+
+/// Warns once where pairs of a list have calibrations of both pairs of KITTI's cameras, and neither
+/// `chosen` nor the folders of their images say which: the grey ones are used.
+void warn_of_grey_cameras(const Settings& settings, const CommonOptions& common,
+                          const ListColumns& columns, std::optional<KittiCameras> chosen);
 
 }  // namespace vantage::apps

@@ -49,14 +49,7 @@ void add_file_settings(Settings& settings, MatchJob& job) {
                 "Cameras one above the other: LEFT is the image of the upper one, --disparities "
                 "are y_upper - y_lower, --disparities-y are x_upper - x_lower, and --baselines are "
                 "positive downwards");
-  settings.input_path("unrectified", job.unrectified, "FILE",
-                      "Cameras of photographs that are not rectified (OpenCV, Middlebury or KITTI "
-                      "file, or the matrices of 'vantage rectify'): epipolar lines are searched "
-                      "instead of rows. Maps are on the pixels of the photographs, disparities "
-                      "those of the rectified pair");
-  settings.flag("rectified-pixels", job.rectified_pixels,
-                "With --unrectified: bring maps to the pixels of the rectified images, as 'vantage "
-                "synth --calibration' takes them");
+  add_unrectified_settings(settings, job.unrectified, job.rectified_pixels);
   Setting& output = settings.path(
       "output", job.output, "FILE",
       fmt::format("Path to the disparity map: {}; with --disparities-y displacements: {}",

@@ -159,4 +159,18 @@ SettingValue reported_settings(const Settings& settings, const MatchOptions& opt
   return values;
 }
 
+void add_unrectified_settings(Settings& settings, std::string& file, bool& rectified_pixels) {
+  settings
+      .input_path(
+          "unrectified", file, "FILE",
+          "Cameras of photographs that are not rectified (OpenCV, Middlebury or KITTI file, "
+          "or the matrices of 'vantage rectify'): epipolar lines are searched instead of "
+          "rows. Maps are on the pixels of the photographs, disparities those of the "
+          "rectified pair")
+      .changes_results = false;
+  settings.flag("rectified-pixels", rectified_pixels,
+                "With --unrectified: bring maps to the pixels of the rectified images, as 'vantage "
+                "synth --calibration' takes them");
+}
+
 }  // namespace vantage::apps

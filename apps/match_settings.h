@@ -29,4 +29,8 @@ void add_reference_setting(Settings& settings, Side& reference);
 /// is the preset used, or "none".
 SettingValue reported_settings(const Settings& settings, const MatchOptions& options);
 
+/// --unrectified and --rectified-pixels, in the present group. The file counts as an input that the
+/// journal of a run identifies by its content.
+void add_unrectified_settings(Settings& settings, std::string& file, bool& rectified_pixels);
+
 }  // namespace vantage::apps

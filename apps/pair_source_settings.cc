@@ -60,7 +60,8 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
       "above/below, left on top; sbs2l, ab2l half size",
       "none");
   add_raw_video_setting(settings, input.raw_video);
-  path("pairs", input.pairs, "FILE.csv", "List of image files, one line left,right per pair");
+  path("pairs", input.pairs, "FILE.csv",
+       "List of image files, lines left,right; a heading may name more columns");
   path("sequence", input.sequence, "SOURCE", "Frames of one moving camera; see --step");
   settings.integer("step", input.step, "K",
                    "Frame t is the left image, frame t + K the right image");

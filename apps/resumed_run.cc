@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array kSources = {"left",  "right",    "more",        "stereo",
-                                 "pairs", "sequence", "calibration", "poses"};
+constexpr std::array kSources = {"left",     "right",       "more",        "stereo", "pairs",
+                                 "sequence", "calibration", "unrectified", "poses"};
 constexpr const char* kKeepGoing = "keep-going";
 
 bool names_input(const PairSourceOptions& input) {

@@ -38,7 +38,7 @@ void RigScale::validate(const std::string& calibration) const {
     throw UsageError(fmt::format("--doffs is {}, expected a finite number", *doffs_px));
   }
   if (!calibration.empty()) {
-    if (focal_length_px || doffs_px || principal_point_px) {
+    if (replaces_calibration()) {
       throw UsageError(
           "--calibration is given with --focal-length, --doffs or --principal-point, expected one "
           "of both: a calibration has all three");

@@ -22,6 +22,10 @@ struct RigScale {
   std::optional<std::array<double, 2>> principal_point_px = std::nullopt;
   std::optional<double> metres_per_unit = std::nullopt;  ///< of the calibration
 
+  /// Whether fields stand in place of a calibration.
+  [[nodiscard]] bool replaces_calibration() const {
+    return focal_length_px || doffs_px || principal_point_px;
+  }
   /// Throws UsageError where fields are wrong or do not go together. `calibration` is the path to
   /// the file, or empty.
   void validate(const std::string& calibration) const;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/automatic_disparities.h"
@@ -65,38 +67,40 @@ void print_processor_time(const SequenceReport& sequence) {
        100 * sequence.share_busy);
 }
 
-/// Depth resolution in the report: over all delivered frames the values at the nearest and the
-/// farthest disparity and the median of the frames' medians, then the values of each frame. Null
+/// Depth resolution in the report: the values of each delivered frame, and, if all have one scale,
+/// those at the nearest and the farthest disparity of any and the median of their medians. Null
 /// where no disparity is known.
-SettingValue depth_resolution_of(const RunJob& job, const RunSession& session,
-                                 const DeliveredFrames& delivered) {
+SettingValue depth_resolution_of(const RunJob& job, const DeliveredFrames& delivered) {
+  const double step_px = job.sequence.used_disparity_step_px();
   SettingValue frames = SettingValue::array();
   std::vector<float> medians;
-  DisparityQuantiles all;
-  const auto values_of = [&](const DisparityQuantiles& disparities) {
-    return depth_resolution_values(disparities, session.map_camera->scale,
-                                   job.sequence.used_disparity_step_px());
-  };
+  std::optional<DisparitiesAndScale> all;
+  bool has_one_scale = true;
   for (const auto& [frame, record] : delivered.records()) {
     if (!record.disparities) {
       continue;
     }
-    const DisparityQuantiles& here = *record.disparities;
-    all.nearest_px = medians.empty() ? here.nearest_px : std::max(all.nearest_px, here.nearest_px);
-    all.farthest_px =
-        medians.empty() ? here.farthest_px : std::min(all.farthest_px, here.farthest_px);
-    medians.push_back(here.median_px);
-    const SettingValue values = values_of(here);
+    const auto& [here, scale] = *record.disparities;
+    const SettingValue values = depth_resolution_values(here, scale, step_px);
     frames.push_back({{"frame", frame},
                       {"nearest", values["nearest"]},
                       {"median", values["median"]},
                       {"farthest", values["farthest"]}});
+    if (!all) {
+      all = record.disparities;
+    }
+    has_one_scale = has_one_scale && scale == all->scale;
+    all->disparities.nearest_px = std::max(all->disparities.nearest_px, here.nearest_px);
+    all->disparities.farthest_px = std::min(all->disparities.farthest_px, here.farthest_px);
+    medians.push_back(here.median_px);
   }
-  if (medians.empty()) {
+  if (!all) {
     return nullptr;
   }
-  all.median_px = upper_median(medians);
-  SettingValue values = values_of(all);
+  all->disparities.median_px = upper_median(medians);
+  SettingValue values = has_one_scale
+                            ? depth_resolution_values(all->disparities, all->scale, step_px)
+                            : SettingValue{{"disparity_resolution_px", step_px}};
   values["frames"] = std::move(frames);
   return values;
 }
@@ -152,7 +156,7 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
     results["flicker"] = flicker_values(total_flicker(delivered));
   }
   if (job.sequence.saves(SequenceOutput::kDepthResolution)) {
-    results["depth_resolution"] = depth_resolution_of(job, session, delivered);
+    results["depth_resolution"] = depth_resolution_of(job, delivered);
   }
   if (sequence.cut) {
     results["cut_range"] = cut_range_values(*sequence.cut);

@@ -10,6 +10,7 @@
 #include "apps/frame_step_setting.h"
 #include "apps/interrupt.h"
 #include "apps/kitti_cameras_choice.h"
+#include "apps/list_columns.h"
 #include "apps/rectification_check.h"
 #include "apps/resumed_run.h"
 #include "apps/stream_run.h"
@@ -58,15 +59,20 @@ RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSe
   identity.settings = values.dump(-1, ' ', false, SettingValue::error_handler_t::replace);
   identity.sources = sources_of(job, settings);
   identity.inputs = session.pairs->identities();
-  if (!job.calibration.empty()) {
+  if (!job.cameras_file().empty()) {
     FileIdentity calibration;
-    calibration.add(fs::path(job.calibration).filename().string(), job.calibration);
-    identity.inputs.push_back("calibration: " + calibration.to_string());
+    calibration.add(fs::path(job.cameras_file()).filename().string(), job.cameras_file());
+    identity.inputs.push_back((job.unrectified.empty() ? "calibration: " : "unrectified: ") +
+                              calibration.to_string());
   }
   if (!job.poses.empty()) {
     FileIdentity poses;
     poses.add(fs::path(job.poses).filename().string(), job.poses);
     identity.inputs.push_back("poses: " + poses.to_string());
+  }
+  if (!job.input.pairs.empty()) {
+    const std::vector<std::string> columns = column_identities(*session.pairs);
+    identity.inputs.insert(identity.inputs.end(), columns.begin(), columns.end());
   }
   identity.frame_count = session.pairs->is_stream() ? kUnknownFrames : session.pairs->pair_count();
   const PairSource::Sound sound = session.pairs->sound();
@@ -114,6 +120,9 @@ AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Setti
   if (!job.sequence.baselines.empty()) {
     return no_tuning("tuning is for pairs, but there are more images");
   }
+  if (!job.unrectified.empty()) {
+    return no_tuning("tuning is for rectified pairs");
+  }
   if (job.memory_bytes) {
     return no_tuning("--memory is given, so the cost model plans");
   }
@@ -160,6 +169,9 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   for (const fs::path& file : session.pairs->files()) {
     files.add_input(file);
   }
+  for (const auto& [file, cameras] : session.columns.calibrations) {
+    files.add_input(file);
+  }
   const int input_frames = session.pairs->input_frames();
   if (job.frames && job.frames->end > input_frames && !job.common.quiet) {
     tell("run: warning: --frames {}-{} ends after the input, which has {} frames (0 to {})\n",
@@ -177,15 +189,16 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
     }
   });
   Execution execution(job.common.execution);
+  warn_of_grey_cameras(settings, job.common, session.columns, job.kitti_cameras);
   std::optional<StereoCalibration> calibration;
-  if (!job.calibration.empty()) {
-    choose_kitti_cameras(settings, job.common, job.calibration, session.pairs->files(),
+  if (!job.cameras_file().empty()) {
+    choose_kitti_cameras(settings, job.common, job.cameras_file(), session.pairs->files(),
                          job.kitti_cameras);
     report.set_settings(reported_settings(settings, job.sequence.match));
-    calibration = job.rig.read(job.calibration, job.kitti_cameras);
+    calibration = job.rig.read(job.cameras_file(), job.kitti_cameras);
   }
   prepare_pairs(job, calibration, job.sequence.is_metric(), first, execution, session);
-  if (job.check_rectification) {
+  if (job.check_rectification && job.unrectified.empty()) {
     warn_unless_rectified(settings, job.common, expects_negative_disparities(job.sequence.match),
                           first.left, first.right, report);
   }
@@ -203,7 +216,10 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
     }
     return found;
   };
-  choose_disparities(settings, job.common, find_range, job.sequence.match, report);
+  MatchOptions& match = job.sequence.match;
+  use_ranges(session.columns, match);
+  report.set_settings(reported_settings(settings, match));
+  choose_disparities(settings, job.common, find_range, match, report);
   session.pairs->forget_start();
   job.sequence.validate();
   job.sequence.frame_rate =
@@ -216,8 +232,10 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
                                  execution.executor().name());
   const std::optional<int> in_flight =
       job.in_flight ? job.in_flight : session.tuning.settings.frames_in_flight;
-  session.memory = plan_memory(job.sequence, {in_flight, job.memory_bytes}, session.shape, first,
-                               session.execution);
+  SequenceOptions planned = job.sequence;
+  planned.match.disparities = session.columns.widest_with(planned.match.disparities);
+  session.memory =
+      plan_memory(planned, {in_flight, job.memory_bytes}, session.shape, first, session.execution);
   return session;
 }
 
@@ -229,7 +247,9 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
       "{} of {}x{} pixels{}{}{}", counted_frames(job, session.selection.frame_count),
       session.shape.source.width_px, session.shape.source.height_px,
       job.input.every.takes_all() ? "" : ", one every " + to_text(job.input.every),
-      session.rectifier ? ", rectified on the fly" : "",
+      !job.unrectified.empty()          ? ", rectified in the search"
+      : session.shape.is_rectified_here ? ", rectified on the fly"
+                                        : "",
       own == FrameRange{0, session.selection.frame_count}
           ? ""
           : fmt::format("; this part: {}", own.empty() ? "none" : "frames " + to_string({own}))));
@@ -239,8 +259,11 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
   if (!session.poses_note.empty()) {
     line("note: " + session.poses_note);
   }
-  line(fmt::format("{}, disparities {}:{}, {}", job.sequence.match.chosen(),
-                   job.sequence.match.disparities.min, job.sequence.match.disparities.max,
+  const std::string range = to_text(job.sequence.match.disparities);
+  line(fmt::format("{}, disparities {}, {}", job.sequence.match.chosen(),
+                   session.columns.all_have_ranges ? "of the list"
+                   : session.columns.widest        ? range + " or of the list"
+                                                   : range,
                    strips_text(session.memory.chain)));
   line(fmt::format("{}, {} frame{} in flight; memory about {}{}", session.executor,
                    session.memory.in_flight, session.memory.in_flight == 1 ? "" : "s",

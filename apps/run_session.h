@@ -7,6 +7,7 @@
 #include "apps/run_settings.h"
 #include "apps/sequence_session.h"
 #include "engine/sequence/memory_plan.h"
+#include "engine/sequence/pair_cameras.h"
 #include "engine/sequence/run_journal.h"
 
 namespace vantage::apps {

@@ -173,6 +173,7 @@ void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequen
 void add_run_settings(Settings& settings, RunJob& job) {
   settings.take_job_file();
   add_input_settings(settings, job);
+  add_unrectified_settings(settings, job.unrectified, job.rectified_pixels);
   add_kitti_cameras_setting(settings, job.kitti_cameras);
   add_rectification_check_setting(settings, job.check_rectification);
   add_output_settings(settings, job);
@@ -218,8 +219,10 @@ void complete(RunJob& job, const Settings& settings) {
     settings.refuse_idle({"tuning"}, "with --memory, for which the cost model plans");
   }
   check_sequence(job, settings, job.resume);
-  if (job.kitti_cameras && job.calibration.empty()) {
-    throw UsageError("--kitti-cameras has no effect without --calibration");
+  if (!job.unrectified.empty()) {
+    settings.refuse_idle({"tuning", "no-tuning"},
+                         "with --unrectified: tuning is for rectified pairs");
+    settings.refuse_idle({"no-rectification-check", "already-rectified"}, "with --unrectified");
   }
   require_disparity_resolution(job.sequence.disparity_step_px);
   job.common.execution.validate();

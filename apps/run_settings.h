@@ -10,7 +10,6 @@
 #include "apps/progress.h"
 #include "apps/sequence_job.h"
 #include "apps/settings.h"
-#include "engine/rectification/kitti_cameras.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/work_plan.h"
 
@@ -21,7 +20,6 @@ struct RunJob : SequenceJob {
   std::string output;                               ///< folder
   StreamFormat stream_format = StreamFormat::kY4m;  ///< of standard output
   std::optional<FrameRate> frame_rate;              ///< empty: the input's, else 25
-  std::optional<KittiCameras> kitti_cameras;        ///< of a calibration of KITTI
   std::optional<Shard> shard;
   std::optional<std::size_t> memory_bytes;
   bool dry_run = false;

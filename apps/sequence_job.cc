@@ -95,6 +95,20 @@ void refuse_idle_options(const SequenceOptions& sequence, const Settings& settin
   }
 }
 
+/// The options of the sequence are checked with it.
+void check_unrectified(const SequenceJob& job, const Settings& settings) {
+  if (job.unrectified.empty()) {
+    settings.refuse_idle({"rectified-pixels"}, "without --unrectified");
+    return;
+  }
+  settings.refuse_idle({"cross-check-level"}, "with --unrectified: whole maps are compared");
+  if (!job.calibration.empty()) {
+    throw UsageError(
+        "--calibration and --unrectified are both given, expected one of them: both are of the "
+        "cameras");
+  }
+}
+
 }  // namespace
 
 std::vector<SequenceOutput> to_outputs(const SettingValue& value) {
@@ -230,6 +244,9 @@ void add_in_flight_setting(Settings& settings, SequenceJob& job) {
 void complete_sequence(SequenceJob& job, bool is_streamed) {
   SequenceOptions& sequence = job.sequence;
   sequence.views = paths_of(job.views);
+  sequence.unrectified = job.unrectified.empty() ? UnrectifiedSearch::kNone
+                         : job.rectified_pixels  ? UnrectifiedSearch::kOnRectified
+                                                 : UnrectifiedSearch::kOnPhotographs;
   if (job.save) {
     sequence.save = *job.save;
   } else {
@@ -250,16 +267,23 @@ void complete_sequence(SequenceJob& job, bool is_streamed) {
 void check_sequence(SequenceJob& job, const Settings& settings, bool is_continued) {
   refuse_idle_options(job.sequence, settings);
   check_several(job, settings, is_continued);
-  check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.calibration.empty());
+  check_unrectified(job, settings);
+  check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.cameras_file().empty());
   apply_step_of_frames(job);
   job.input.validate();
   job.rectification.validate();
-  job.rig.validate(job.calibration);
-  if (job.sequence.is_metric()) {
-    job.rig.require_given(job.calibration, "save depth, depth-resolution, cloud or mesh");
+  // A list of pairs may have them; checked when it has been read.
+  const bool may_be_listed =
+      !job.input.pairs.empty() && job.cameras_file().empty() && !job.rig.replaces_calibration();
+  job.rig.validate(may_be_listed ? job.input.pairs : job.cameras_file());
+  if (job.sequence.is_metric() && !may_be_listed) {
+    job.rig.require_given(job.cameras_file(), "save depth, depth-resolution, cloud or mesh");
   }
-  if (job.rectification.kept_outline > 0 && job.calibration.empty()) {
+  if (job.rectification.kept_outline > 0 && job.calibration.empty() && !may_be_listed) {
     throw UsageError("--kept-outline has no effect without --calibration");
+  }
+  if (job.kitti_cameras && job.cameras_file().empty() && !may_be_listed) {
+    throw UsageError("--kitti-cameras has no effect without --calibration");
   }
   if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxFramesInFlight)) {
     throw UsageError(fmt::format("in-flight is {}, expected a number from 1 to {}", *job.in_flight,

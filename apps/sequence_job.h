@@ -8,6 +8,7 @@
 #include "apps/rig_scale.h"
 #include "apps/sequence_views.h"
 #include "apps/settings.h"
+#include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/sequence_options.h"
@@ -21,6 +22,9 @@ struct SequenceJob {
 
   PairSourceOptions input;
   std::string calibration;  ///< file, empty = rectified pairs
+  std::string unrectified;  ///< file of cameras of photographs that are not rectified
+  bool rectified_pixels = false;
+  std::optional<KittiCameras> kitti_cameras;  ///< of calibrations of KITTI
   RectificationOptions rectification;
   RigScale rig;       ///< of depths
   std::string poses;  ///< file of a trajectory; empty: points are in the frame of the camera
@@ -35,6 +39,11 @@ struct SequenceJob {
   std::optional<int> step_of_frames;  ///< N of --frames A-B:N
   std::optional<int> in_flight;       ///< 1..64; empty: from threads and memory
   bool keep_going = false;
+
+  /// The file of the cameras, empty: none.
+  [[nodiscard]] const std::string& cameras_file() const {
+    return unrectified.empty() ? calibration : unrectified;
+  }
 };
 
 /// Outputs by their names, separated by commas, and their names. Throws UsageError.

@@ -48,13 +48,20 @@ void check_number_of_poses(const SequenceJob& job, const FramePair& pair,
 }  // namespace
 
 void SequenceSession::rectify(FramePair& pair, Execution& pool) const {
-  if (!rectifier) {
+  std::shared_ptr<const PairCameras::Cameras> own;
+  if (!pair.details.calibration.empty()) {
+    own = pair_cameras->of(pair.details, {pair.left.width(), pair.left.height()});
+  }
+  const Rectifier* const used = own != nullptr ? &own->rectifier
+                                : rectifier    ? &*rectifier
+                                               : nullptr;
+  if (used == nullptr || !used->needs_rectification()) {
     return;
   }
   Photograph rectified;
-  rectifier->apply(pair.left, Side::kLeft, rectified, pool);
+  used->apply(pair.left, Side::kLeft, rectified, pool);
   std::swap(pair.left, rectified);
-  rectifier->apply(pair.right, Side::kRight, rectified, pool);
+  used->apply(pair.right, Side::kRight, rectified, pool);
   std::swap(pair.right, rectified);
 }
 
@@ -67,6 +74,7 @@ SequenceRun SequenceSession::run(const SequenceJob& job, PairSource& source, con
           .selection = selection,
           .frame_size = any_size ? std::nullopt : std::optional(shape.source),
           .rectifier = rectifier ? &*rectifier : nullptr,
+          .pair_cameras = pair_cameras.get(),
           .cameras = shape.cameras ? &*shape.cameras : nullptr,
           .map_camera = map_camera ? &*map_camera : nullptr,
           .poses = poses ? &*poses : nullptr,
@@ -103,6 +111,10 @@ std::optional<FrameRange> selected_pairs(const SequenceJob& job, const PairSourc
 
 void open_source(const SequenceJob& job, SequenceSession& session) {
   session.pairs = open_pair_source(job.input);
+  session.columns = check_list_columns(job, *session.pairs);
+  if (!session.columns.calibrations.empty()) {
+    session.pair_cameras = std::make_unique<PairCameras>(pair_camera_options(job));
+  }
   session.selection = {.frame_count = session.pairs->pair_count(),
                        .chunk_frames = job.sequence.chunk_frames,
                        .frames = selected_pairs(job, *session.pairs),
@@ -132,17 +144,21 @@ void prepare_pairs(const SequenceJob& job, const std::optional<StereoCalibration
       session.map_camera = map_camera(rectifier.pair(), job.sequence.match.reference,
                                       job.rig.required_unit_of(*calibration));
     }
-    if (rectifier.needs_rectification()) {
+    if (rectifier.needs_rectification() || !job.unrectified.empty()) {
       session.rectifier.emplace(std::move(rectifier));
       session.shape.is_rectified_here = true;
-      session.rectify(first, execution);
     }
   }
+  if (session.pair_cameras) {
+    session.shape.is_rectified_here = true;
+    session.shape.cameras_kept = PairCameras::kKept;
+  }
+  session.rectify(first, execution);
   if (!job.poses.empty()) {
     session.poses.emplace(read_trajectory(job.poses), job.poses);
     check_number_of_poses(job, first, session);
   }
-  if (!calibration && is_metric) {
+  if (!calibration && job.rig.focal_length_px && is_metric) {
     session.map_camera = job.rig.camera(first.left.width(), first.left.height(),
                                         job.sequence.match.reference, false);
   }

@@ -9,11 +9,12 @@
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/reduced_matcher.h"
 #include "engine/matching/selection/symmetric_energies.h"
+#include "engine/rectification/epipolar_grid.h"
 
 namespace vantage {
 
 std::size_t matching_bytes(const ResolvedMatchOptions& options, const MatchSize& size) {
-  if (size.baselines.empty() && search_reductions(options, size.image) > 0) {
+  if (size.baselines.empty() && !size.along_lines && search_reductions(options, size.image) > 0) {
     return ReducedMatcher::working_bytes(options, size.image);
   }
   const MethodParameters& parameters = options.parameters;
@@ -27,10 +28,16 @@ std::size_t matching_bytes(const ResolvedMatchOptions& options, const MatchSize&
     planes += 4 * static_cast<std::size_t>(sample_phases(size.baselines[k] / size.baselines.front(),
                                                          steps_per_px(parameters)));
   }
+  std::size_t grids = 0;
+  if (size.along_lines) {
+    // Samples of the other image along and between its lines; places of the pixels.
+    planes += 4 * static_cast<std::size_t>(EpipolarGrid::kPhases * EpipolarGrid::kPhases);
+    grids = 2 * 16 * pixels;
+  }
   constexpr std::size_t kCheckedMaps = 2;  // of coarse levels
   const int check_level = options.refinement ? options.refinement->cross_check_level : 0;
   const int candidates = candidate_count(options.disparities, parameters);
-  return pixels * channels * planes * sizeof(float) +
+  return pixels * channels * planes * sizeof(float) + grids +
          (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
          edge_weight_bytes(parameters, pixels) +
          coarse_level_bytes(parameters, size.image, candidates, size.level_bytes) +

@@ -16,6 +16,7 @@ struct MatchSize {
   int channels = 1;
   /// Of the partners, for several cameras, see SequenceOptions::baselines.
   std::span<const double> baselines = {};
+  bool along_lines = false;  ///< of photographs that are not rectified: UnrectifiedMatcher
   std::size_t level_bytes = kDefaultLevelBytes;  ///< ExecutionOptions::level_memory_bytes
 };
 

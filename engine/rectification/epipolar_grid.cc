@@ -193,4 +193,11 @@ void EpipolarGrid::sample(const Photograph& other, int along, int down, Photogra
       other.pixels);
 }
 
+std::shared_ptr<const EpipolarGrids> epipolar_grids(const Rectifier& rectifier,
+                                                    Execution& execution) {
+  return std::make_shared<const EpipolarGrids>(
+      EpipolarGrids{EpipolarGrid(rectifier, Side::kLeft, execution),
+                    EpipolarGrid(rectifier, Side::kRight, execution)});
+}
+
 }  // namespace vantage

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -74,5 +76,12 @@ class EpipolarGrid {
   int knot_columns_ = 0;
   std::vector<Eigen::Vector2d> knots_;
 };
+
+/// Of the left and of the right reference.
+using EpipolarGrids = std::array<EpipolarGrid, 2>;
+
+/// Grids of both photographs, for matchers to share. Takes 16 bytes per pixel and photograph.
+std::shared_ptr<const EpipolarGrids> epipolar_grids(const Rectifier& rectifier,
+                                                    Execution& execution);
 
 }  // namespace vantage

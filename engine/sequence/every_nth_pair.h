@@ -28,6 +28,9 @@ class EveryNthPair final : public PairSource {
   [[nodiscard]] std::string describe(int index) const override {
     return source_->describe(source_index(index));
   }
+  [[nodiscard]] PairDetails details(int index) const override {
+    return source_->details(source_index(index));
+  }
   [[nodiscard]] std::vector<std::string> remarks() const override { return source_->remarks(); }
   [[nodiscard]] int unpaired_frames() const override { return source_->unpaired_frames(); }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override;

@@ -42,8 +42,8 @@ class FrameIterator::Work {
       : run_(run),
         layout_("-", options),
         execution_(execution),
-        worker_({options, layout_, run.pairs, run.frame_size, run.rectifier, run.cameras,
-                 run.map_camera, run.poses, run.shots, execution, accounts_}),
+        worker_({options, layout_, run.pairs, run.frame_size, run.rectifier, run.pair_cameras,
+                 run.cameras, run.map_camera, run.poses, run.shots, execution, accounts_}),
         feed_(plan_work(selection_of(run, frames), dependence_of(options, layout_),
                         [&](int frame) { return !std::ranges::binary_search(frames, frame); })),
         flicker_(options, execution),
@@ -175,11 +175,11 @@ class FrameIterator::Work {
     if (slot->is_lead_in) {
       return;
     }
-    frame.searched = worker_.searched_in(slot->frame);
-    frame.preview = worker_.preview_range_of_frame(slot->frame);
+    frame.searched = worker_.searched_in(*slot);
+    frame.preview = worker_.preview_range_of_frame(*slot);
     const MatchRequest request = worker_.request();
     frame.has_both_maps = request.left && request.right;
-    if (run_.map_camera != nullptr) {
+    if (worker_.map_camera_of(*slot) != nullptr) {
       frame.camera = worker_.point_camera(*slot);
     }
     frame.slot = std::move(slot);

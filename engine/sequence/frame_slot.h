@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
+#include "engine/sequence/pair_cameras.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/pending_files.h"
 #include "engine/sequence/run_journal.h"
@@ -32,6 +34,8 @@ struct FrameSlot {
   /// to be written.
   const FrameRecord* stored = nullptr;
   FramePair pair;
+  /// Of the pair's own calibration; null: the cameras of the run.
+  std::shared_ptr<const PairCameras::Cameras> cameras;
   std::array<Photograph, 2> rectified;  ///< if a calibration is applied
   const Photograph* left = nullptr;     ///< input of matching: of `pair` or `rectified`
   const Photograph* right = nullptr;
@@ -51,10 +55,11 @@ struct FrameSlot {
   std::vector<ViewPose> view_poses;  ///< of `views`, as for new_view()
   Photograph preview;
   Photograph stereo;
-  Photograph depth;                               ///< see paint_depth()
-  std::optional<FrameComfort> comfort;            ///< if it is wanted
-  std::optional<DisparityQuantiles> disparities;  ///< of the reference's map, with kDepthResolution
-  std::vector<std::uint8_t> encoded;              ///< the file being written
+  Photograph depth;                     ///< see paint_depth()
+  std::optional<FrameComfort> comfort;  ///< if it is wanted
+  /// Of the reference's map, with kDepthResolution.
+  std::optional<DisparitiesAndScale> disparities;
+  std::vector<std::uint8_t> encoded;  ///< the file being written
   PendingFiles files;
   std::vector<FileRecord> file_records;  ///< of `files`
   std::vector<StageTime> times;          ///< of all steps except matching

@@ -15,12 +15,8 @@
 #include "engine/image/content_hash.h"
 #include "engine/image/stereo_display.h"
 #include "engine/io/checksum.h"
-#include "engine/io/depth_io.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
 #include "engine/io/preview.h"
-#include "engine/reprojection/ply_file.h"
-#include "engine/reprojection/point_cloud.h"
+#include "engine/matching/unrectified/rectified_map.h"
 #include "engine/sequence/depth_picture.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/sequence/stored_maps.h"
@@ -94,13 +90,16 @@ FrameWorker::FrameWorker(const FrameTools& tools)
       pairs_(tools.pairs),
       frame_size_(tools.frame_size),
       rectifier_(tools.rectifier),
+      pair_cameras_(tools.pair_cameras),
       cameras_(tools.cameras),
       map_camera_(tools.map_camera),
       poses_(tools.poses),
       shots_(tools.shots),
       execution_(tools.execution),
       accounts_(tools.accounts),
-      matchers_(tools.options.match, tools.shots, tools.execution),
+      matchers_(tools.options.match, tools.shots,
+                tools.options.unrectified != UnrectifiedSearch::kNone ? tools.rectifier : nullptr,
+                tools.execution),
       renderer_(tools.options.synthesis, tools.cameras, tools.execution),
       videos_show_views_(videos_show_views(tools.options)),
       maps_are_stored_(maps_are_stored(tools.options)),
@@ -133,14 +132,28 @@ void FrameWorker::prepare(FrameSlot& slot) const {
   }
   slot.left = &slot.pair.left;
   slot.right = &slot.pair.right;
-  if (rectifier_ != nullptr) {
+  slot.cameras.reset();
+  if (!slot.pair.details.calibration.empty()) {
+    require_size(slot.pair.right, "right", {slot.pair.left.width(), slot.pair.left.height()});
+    slot.cameras =
+        pair_cameras_->of(slot.pair.details, {slot.pair.left.width(), slot.pair.left.height()});
+  }
+  const Rectifier* const rectifier = rectifier_of(slot);
+  if (rectifier != nullptr && options_.unrectified != UnrectifiedSearch::kOnPhotographs) {
     const BusyClock::Activity activity(compute_clock_);
     const TimedStep step(slot, "rectify", accounts_.of(RunStep::kRectify));
-    rectifier_->apply(slot.pair.left, Side::kLeft, slot.rectified[0], execution_);
-    rectifier_->apply(slot.pair.right, Side::kRight, slot.rectified[1], execution_);
+    rectifier->apply(slot.pair.left, Side::kLeft, slot.rectified[0], execution_);
+    rectifier->apply(slot.pair.right, Side::kRight, slot.rectified[1], execution_);
     slot.left = &slot.rectified[0];
     slot.right = &slot.rectified[1];
   }
+}
+
+const Rectifier* FrameWorker::rectifier_of(const FrameSlot& slot) const {
+  if (slot.cameras == nullptr) {
+    return rectifier_;
+  }
+  return slot.cameras->rectifier.needs_rectification() ? &slot.cameras->rectifier : nullptr;
 }
 
 void FrameWorker::compute(FrameSlot& slot) {
@@ -153,8 +166,9 @@ void FrameWorker::compute(FrameSlot& slot) {
   }
   if (slot.stored == nullptr || !maps_are_stored_) {
     const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kMatch));
-    const std::shared_ptr<const ShotMatcher> shot = matchers_.of(slot.frame);
-    match(slot, shot->matcher);
+    const std::shared_ptr<const ShotMatcher> shot =
+        matchers_.of(slot.frame, slot.pair.details.disparities);
+    match(slot, *shot);
     check_range(slot, shot->options);
     if (options_.saves_cyclopean()) {
       const TimedStep step(slot, "cyclopean map", accounts_.of(RunStep::kMatch));
@@ -204,11 +218,16 @@ MatchRequest FrameWorker::request() const {
                         (options_.saves_points() && options_.cloud.reads_confidence())};
 }
 
-void FrameWorker::match(FrameSlot& slot, const StereoMatcher& matcher) {
+void FrameWorker::match(FrameSlot& slot, const ShotMatcher& shot) {
+  const StereoMatcher& matcher = shot.matcher;
   MatchRequest request = this->request();
   const VolumeRequest posterior{.side = options_.match.reference, .sink = &slot.posterior};
   if (options_.saves_posterior()) {
     request.volumes = {&posterior, 1};
+  }
+  if (shot.unrectified) {
+    match_along_lines(slot, *shot.unrectified, request);
+    return;
   }
   if (!computes_in_order()) {
     match_images(slot, matcher, request);
@@ -222,6 +241,21 @@ void FrameWorker::match(FrameSlot& slot, const StereoMatcher& matcher) {
     match_with_reuse(slot, matcher, request, is_first);
   } else {
     match_with_prior(slot, matcher, request, is_first);
+  }
+}
+
+void FrameWorker::match_along_lines(FrameSlot& slot, const UnrectifiedMatcher& matcher,
+                                    const MatchRequest& request) const {
+  matcher.match(slot.pair.left, slot.pair.right,
+                {.left = request.left, .right = request.right, .confidence = request.confidence},
+                slot.maps, &slot.match);
+  if (options_.unrectified != UnrectifiedSearch::kOnRectified) {
+    return;
+  }
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    if (side == Side::kLeft ? request.left : request.right) {
+      bring_to_rectified(*rectifier_, side, execution_, slot.maps.of(side));
+    }
   }
 }
 
@@ -280,7 +314,7 @@ void FrameWorker::match_with_reuse(FrameSlot& slot, const StereoMatcher& matcher
 }
 
 void FrameWorker::check_range(FrameSlot& slot, const MatchOptions& options) {
-  if (!options_.baselines.empty()) {
+  if (!options_.baselines.empty() || options_.unrectified != UnrectifiedSearch::kNone) {
     slot.may_be_cut = false;
     return;
   }
@@ -336,10 +370,12 @@ void FrameWorker::synthesize(FrameSlot& slot) const {
   }
 }
 
-PreviewRange FrameWorker::preview_range_of_frame(int frame) const {
-  return options_.preview_range_per_shot
-             ? shots_->shot_of(frame).preview_range
-             : preview_range_of(searched_in_all(options_.match.disparities, shots_));
+PreviewRange FrameWorker::preview_range_of_frame(const FrameSlot& slot) const {
+  if (options_.preview_range_per_shot) {
+    return shots_->shot_of(slot.frame).preview_range;
+  }
+  return preview_range_of(
+      slot.pair.details.disparities.value_or(searched_in_all(options_.match.disparities, shots_)));
 }
 
 void FrameWorker::paint_preview(FrameSlot& slot) const {
@@ -347,7 +383,7 @@ void FrameWorker::paint_preview(FrameSlot& slot) const {
     return;
   }
   const TimedStep step(slot, "preview", accounts_.of(RunStep::kPictures));
-  const PreviewRange range = preview_range_of_frame(slot.frame);
+  const PreviewRange range = preview_range_of_frame(slot);
   slot.preview.pixels = colour_preview(primary_map(slot).view(), range.min_px, range.max_px);
 }
 
@@ -380,7 +416,9 @@ void FrameWorker::measure_disparities_of(FrameSlot& slot) const {
     return;
   }
   const TimedStep step(slot, "depth", accounts_.of(RunStep::kPictures));
-  slot.disparities = disparity_quantiles(primary_map(slot).view());
+  if (const auto disparities = disparity_quantiles(primary_map(slot).view())) {
+    slot.disparities = {*disparities, map_camera_of(slot)->scale};
+  }
 }
 
 void FrameWorker::pack_stereo_picture(FrameSlot& slot) const {
@@ -402,38 +440,6 @@ const DisparityMap& FrameWorker::primary_map(const FrameSlot& slot) const {
   return slot.maps.of(options_.match.reference).disparity_px;
 }
 
-const Mask& FrameWorker::mask_of(const FrameSlot& slot, const OutputStream& stream) const {
-  if (stream.output == SequenceOutput::kHoles) {
-    return slot.views[static_cast<std::size_t>(stream.view)].holes;
-  }
-  if (stream.output == SequenceOutput::kSources) {
-    return slot.views[static_cast<std::size_t>(stream.view)].sources;
-  }
-  if (stream.output == SequenceOutput::kCyclopeanOcclusion) {
-    return slot.cyclopean.seen_by;
-  }
-  const bool left =
-      options_.match.reference == Side::kLeft && stream.output == SequenceOutput::kUnmatched;
-  return left ? slot.maps.left.unmatched : slot.maps.right.unmatched;
-}
-
-/// Null for masks and maps.
-const Photograph* FrameWorker::stored_picture(const FrameSlot& slot,
-                                              const OutputStream& stream) const {
-  switch (stream.output) {
-    case SequenceOutput::kPreview:
-      return &slot.preview;
-    case SequenceOutput::kViews:
-      return &slot.views[static_cast<std::size_t>(stream.view)].image;
-    case SequenceOutput::kStereo:
-      return &slot.stereo;
-    case SequenceOutput::kDepthVideo:
-      return &slot.depth;
-    default:
-      return nullptr;
-  }
-}
-
 void FrameWorker::copy_picture(const FrameSlot& slot, const OutputStream& stream,
                                Photograph& picture) const {
   if (const Photograph* stored = stored_picture(slot, stream)) {
@@ -441,121 +447,6 @@ void FrameWorker::copy_picture(const FrameSlot& slot, const OutputStream& stream
   } else {
     copy_image(mask_of(slot, stream), picture);
   }
-}
-
-std::string FrameWorker::extension_of(const FrameSlot& slot, const OutputStream& stream) const {
-  switch (stream.output) {
-    case SequenceOutput::kDisparity:
-    case SequenceOutput::kRightDisparity:
-    case SequenceOutput::kConfidence:
-    case SequenceOutput::kPosteriorMean:
-    case SequenceOutput::kPosteriorVariance:
-    case SequenceOutput::kCyclopean:
-    case SequenceOutput::kDepthResolution:
-      return options_.map_format;
-    case SequenceOutput::kDepth:
-      return options_.depth_format;
-    case SequenceOutput::kCloud:
-    case SequenceOutput::kMesh:
-      return "ply";
-    default:
-      break;
-  }
-  // Pictures keep their depth: PNG holds no floats.
-  const Photograph* picture = stored_picture(slot, stream);
-  return picture != nullptr && std::holds_alternative<Image<float>>(picture->pixels) ? "tiff"
-                                                                                     : "png";
-}
-
-MapCamera FrameWorker::point_camera(const FrameSlot& slot) const {
-  if (poses_ == nullptr) {
-    return *map_camera_;
-  }
-  const CameraPose& pose = poses_->of(slot.pair);
-  return in_world(*map_camera_, pose.rotation.transpose(), pose.centre(),
-                  cameras_ != nullptr ? cameras_->left.rotation : Eigen::Matrix3d::Identity());
-}
-
-void FrameWorker::encode_metric(FrameSlot& slot, const OutputStream& stream,
-                                const std::filesystem::path& path) const {
-  const MatchedMap& map = slot.maps.of(options_.match.reference);
-  if (stream.output == SequenceOutput::kDepth) {
-    Image<float> depth_m;
-    depth_map(map.disparity_px.view(), map_camera_->scale,
-              options_.cloud.max_depth.value_or(largest_depth_m(path)), execution_, depth_m);
-    encode_depth(path, depth_m.view(), slot.encoded);
-    return;
-  }
-  if (stream.output == SequenceOutput::kDepthResolution) {
-    Image<float> resolution_m;
-    depth_resolution_map(map.disparity_px.view(), map_camera_->scale,
-                         options_.used_disparity_step_px(), execution_, resolution_m);
-    encode_disparity(path, resolution_m.view(), slot.encoded);
-    return;
-  }
-  const CloudSource source{
-      .disparity_px = map.disparity_px.view(),
-      .colours = options_.match.reference == Side::kLeft ? slot.left : slot.right,
-      .unmatched = map.unmatched.view(),
-      .confidence = map.confidence.view(),
-      .camera = point_camera(slot)};
-  const std::string_view frame = poses_ != nullptr ? kWorldFrame : kCameraFrame;
-  // A film may fade to black.
-  CloudOptions options = options_.cloud;
-  options.may_be_empty = true;
-  bool is_empty = false;
-  if (stream.output == SequenceOutput::kCloud) {
-    const PointCloud cloud = point_cloud(source, options, execution_);
-    is_empty = cloud.size() == 0;
-    slot.encoded = encode_ply(cloud, frame);
-  } else {
-    const TriangleMesh mesh = triangle_mesh(source, options, execution_);
-    is_empty = mesh.triangles.empty();
-    slot.encoded = encode_ply(mesh, frame);
-  }
-  if (is_empty) {
-    slot.pair.remarks.push_back(
-        fmt::format("its {} is empty: no pixel has a disparity that was measured", stream.name));
-  }
-}
-
-/// Writes to the slot's `encoded`.
-void FrameWorker::encode_stream(FrameSlot& slot, const OutputStream& stream,
-                                const std::filesystem::path& path) const {
-  switch (stream.output) {
-    case SequenceOutput::kDisparity:
-      encode_disparity(path, primary_map(slot).view(), slot.encoded);
-      return;
-    case SequenceOutput::kRightDisparity:
-      encode_disparity(path, slot.maps.right.disparity_px.view(), slot.encoded);
-      return;
-    case SequenceOutput::kConfidence:
-      encode_disparity(path, slot.maps.of(options_.match.reference).confidence.view(),
-                       slot.encoded);
-      return;
-    case SequenceOutput::kPosteriorMean:
-      encode_disparity(path, slot.posterior.mean_px().view(), slot.encoded);
-      return;
-    case SequenceOutput::kPosteriorVariance:
-      encode_disparity(path, slot.posterior.variance_px2().view(), slot.encoded);
-      return;
-    case SequenceOutput::kCyclopean:
-      encode_disparity(path, slot.cyclopean.disparity_px.view(), slot.encoded);
-      return;
-    case SequenceOutput::kDepth:
-    case SequenceOutput::kDepthResolution:
-    case SequenceOutput::kCloud:
-    case SequenceOutput::kMesh:
-      encode_metric(slot, stream, path);
-      return;
-    default:
-      break;
-  }
-  if (const Photograph* picture = stored_picture(slot, stream)) {
-    encode_photograph(path, *picture, slot.encoded);
-    return;
-  }
-  encode_photograph(path, Photograph{mask_of(slot, stream).copy()}, slot.encoded);
 }
 
 void FrameWorker::encode(FrameSlot& slot) const {
@@ -569,8 +460,8 @@ void FrameWorker::encode(FrameSlot& slot) const {
     if (stream.as_video) {
       continue;
     }
-    const std::filesystem::path name =
-        SequenceLayout::file(stream, slot.frame, extension_of(slot, stream));
+    const std::filesystem::path name = SequenceLayout::file(
+        stream, slot.frame, slot.pair.details.name, extension_of(slot, stream));
     const std::filesystem::path path = layout_.folder() / name;
     encode_stream(slot, stream, path);
     slot.files.add(path, slot.encoded);

@@ -40,6 +40,7 @@ struct FrameTools {
   const PairSource& pairs;                ///< for decoding
   std::optional<ImageExtent> frame_size;  ///< required for all frames; empty: any
   const Rectifier* rectifier;             ///< null: the pairs are rectified
+  PairCameras* pair_cameras;              ///< null: no pair has a calibration of its own
   const RectifiedPair* cameras;           ///< of the pairs; null if no view needs them
   const MapCamera* map_camera;            ///< of the reference's map, in metres; null if not needed
   const FramePoses* poses;                ///< of the left camera; null: points are in its frame
@@ -80,11 +81,18 @@ class FrameWorker {
   /// What is matched of a frame.
   [[nodiscard]] MatchRequest request() const;
   /// The disparities that a frame is searched in.
-  [[nodiscard]] DisparityRange searched_in(int frame) const {
-    return matchers_.of(frame)->options.disparities;
+  [[nodiscard]] DisparityRange searched_in(const FrameSlot& slot) const {
+    return matchers_.of(slot.frame, slot.pair.details.disparities)->options.disparities;
+  }
+  /// Of the reference's map, in metres; null: not known.
+  [[nodiscard]] const MapCamera* map_camera_of(const FrameSlot& slot) const {
+    if (slot.cameras == nullptr) {
+      return map_camera_;
+    }
+    return slot.cameras->map_camera ? &*slot.cameras->map_camera : nullptr;
   }
   /// The disparities of the first and the last colour of its preview.
-  [[nodiscard]] PreviewRange preview_range_of_frame(int frame) const;
+  [[nodiscard]] PreviewRange preview_range_of_frame(const FrameSlot& slot) const;
   /// Of the points of a frame; needs the camera of the maps.
   [[nodiscard]] MapCamera point_camera(const FrameSlot& slot) const;
   /// The reference's map.
@@ -94,7 +102,10 @@ class FrameWorker {
   void copy_picture(const FrameSlot& slot, const OutputStream& stream, Photograph& picture) const;
 
  private:
-  void match(FrameSlot& slot, const StereoMatcher& matcher);
+  void match(FrameSlot& slot, const ShotMatcher& shot);
+  /// Photographs that are not rectified.
+  void match_along_lines(FrameSlot& slot, const UnrectifiedMatcher& matcher,
+                         const MatchRequest& request) const;
   /// By all images of the frame.
   void match_images(FrameSlot& slot, const StereoMatcher& matcher,
                     const MatchRequest& request) const;
@@ -118,6 +129,8 @@ class FrameWorker {
   void measure_disparities_of(FrameSlot& slot) const;
   void pack_stereo_picture(FrameSlot& slot) const;
   [[nodiscard]] const Photograph* photograph_at(const FrameSlot& slot, double view_x) const;
+  /// Null: the pair is rectified.
+  [[nodiscard]] const Rectifier* rectifier_of(const FrameSlot& slot) const;
   /// Writes a depth map, a map of depth resolutions, a cloud or mesh to the slot's `encoded`.
   void encode_metric(FrameSlot& slot, const OutputStream& stream,
                      const std::filesystem::path& path) const;
@@ -133,6 +146,7 @@ class FrameWorker {
   const PairSource& pairs_;
   std::optional<ImageExtent> frame_size_;
   const Rectifier* rectifier_;
+  PairCameras* pair_cameras_;
   const RectifiedPair* cameras_;
   const MapCamera* map_camera_;
   const FramePoses* poses_;

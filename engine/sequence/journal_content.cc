@@ -24,11 +24,14 @@ bool has_names(const std::vector<FileRecord>& files, std::vector<std::string> na
 }
 
 bool is_likely(const FrameRecord& record, const SequenceLayout& layout) {
+  if (record.name.find('/') != std::string::npos) {
+    return false;
+  }
   std::vector<std::string> begins;  // the format of a file depends on the frame
   if (!record.skipped && !record.absent) {
     for (const OutputStream& stream : layout.streams()) {
       if (!stream.as_video) {
-        begins.push_back(SequenceLayout::file(stream, record.frame, "").string());
+        begins.push_back(SequenceLayout::file(stream, record.frame, record.name, "").string());
       }
     }
   }

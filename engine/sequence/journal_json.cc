@@ -124,6 +124,9 @@ std::vector<FileRecord> files_in(const Json& json) {
 struct ToJson {
   Json operator()(const FrameRecord& record) const {
     Json json = {{"frame", record.frame}};
+    if (!record.name.empty()) {
+      json["name"] = record.name;
+    }
     if (record.skipped) {
       json["skipped"] = record.problem;
     }
@@ -146,8 +149,9 @@ struct ToJson {
       json["comfort"] = comfort_json(*record.comfort);
     }
     if (record.disparities) {
-      json["disparities"] = {record.disparities->nearest_px, record.disparities->median_px,
-                             record.disparities->farthest_px};
+      const auto& [px, scale] = *record.disparities;
+      json["disparities"] = {px.nearest_px, px.median_px, px.farthest_px};
+      json["scale"] = {scale.focal_length_px, scale.baseline, scale.doffs_px};
     }
     return json;
   }
@@ -181,6 +185,7 @@ JournalRecord record_in(const Json& json) {
   }
   FrameRecord record;
   record.frame = count_of(json.at("frame"));
+  record.name = json.value("name", "");
   record.skipped = json.contains("skipped");
   record.problem = json.value("skipped", "");
   record.absent = json.value("absent", false);
@@ -194,7 +199,10 @@ JournalRecord record_in(const Json& json) {
   }
   if (json.contains("disparities")) {
     const Json& px = json.at("disparities");
-    record.disparities = {px.at(0).get<float>(), px.at(1).get<float>(), px.at(2).get<float>()};
+    const Json& scale = json.at("scale");
+    record.disparities = {
+        {px.at(0).get<float>(), px.at(1).get<float>(), px.at(2).get<float>()},
+        {scale.at(0).get<double>(), scale.at(1).get<double>(), scale.at(2).get<double>()}};
   }
   return record;
 }

@@ -97,7 +97,8 @@ std::size_t rectification_bytes(const SequenceOptions& options, const PairShape&
   if (!shape.is_rectified_here) {
     return 0;
   }
-  return 2 * 2 * sizeof(float) * pixels_of(shape.source) +
+  return static_cast<std::size_t>(shape.cameras_kept) * 2 * 2 * sizeof(float) *
+             pixels_of(shape.source) +
          (views_show_photographs(options)
               ? PhotographGrid::held_bytes(shape.source.width_px, shape.source.height_px)
               : 0);
@@ -108,7 +109,8 @@ std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) 
   return matching_bytes(options.match.in_force(),
                         {.image = {shape.source.width_px, shape.source.height_px},
                          .channels = shape.channels,
-                         .baselines = options.baselines});
+                         .baselines = options.baselines,
+                         .along_lines = options.unrectified != UnrectifiedSearch::kNone});
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {

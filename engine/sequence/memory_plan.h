@@ -28,6 +28,7 @@ struct PairShape {
   int bytes_per_value = 1;
   bool is_video = false;                      ///< they come from videos
   bool is_rectified_here = false;             ///< a calibration is applied
+  int cameras_kept = 1;                       ///< whose rectifications are in memory
   int frames_kept = 0;                        ///< PairSource::frames_kept()
   int pair_count = 1;                         ///< of the input
   std::optional<RectifiedPair> cameras = {};  ///< if the pairs are calibrated

@@ -1,15 +1,19 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/sequence/pair_source.h"
+
 namespace vantage {
 
-/// A line of a list of pairs; the reader resolves relative names.
+/// A line of a list of pairs; the reader resolves relative names of images.
 struct ListedPair {
   std::filesystem::path left;
   std::filesystem::path right;
+  PairDetails details = {};  ///< the calibration is relative to the file as given
 };
 
 /// Parses a list of pairs; see PairSourceOptions::pairs for the format. Lines end with LF, CRLF or

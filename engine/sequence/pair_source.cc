@@ -29,16 +29,20 @@ constexpr double kMaxTakenSeconds = 86400;
 std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file) {
   std::vector<std::filesystem::path> left;
   std::vector<std::filesystem::path> right;
+  std::vector<PairDetails> details;
   for (ListedPair& pair : read_pair_list(file)) {
     left.push_back(std::move(pair.left));
     right.push_back(std::move(pair.right));
+    details.push_back(std::move(pair.details));
   }
   const auto open_column = [&](const char* column, std::vector<std::filesystem::path> names) {
     return std::make_unique<ListedImages>(fmt::format("{} ({} column)", file.string(), column),
                                           file.parent_path(), std::move(names));
   };
-  return std::make_unique<TwoCameraPairs>(open_column("left", std::move(left)),
-                                          open_column("right", std::move(right)), 0, false);
+  auto pairs = std::make_unique<TwoCameraPairs>(open_column("left", std::move(left)),
+                                                open_column("right", std::move(right)), 0, false);
+  pairs->set_details(std::move(details));
+  return pairs;
 }
 
 void validate_step(const FrameStep& every) {

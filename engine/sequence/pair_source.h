@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "engine/image/disparity_range.h"
 #include "engine/image/stereo_packing.h"
 #include "engine/io/frame_source.h"
 #include "engine/io/raw_video_shape.h"
+#include "engine/rectification/kitti_cameras.h"
 #include "engine/sequence/frame_range.h"
 
 namespace vantage {
@@ -19,6 +21,17 @@ namespace vantage {
 struct ImageExtent {
   int width_px = 0;
   int height_px = 0;
+};
+
+/// What a list says of one pair beside its images.
+struct PairDetails {
+  std::string name = {};                   ///< of its result files; empty: its number
+  std::filesystem::path calibration = {};  ///< of its cameras; empty: that of the run
+  /// Of a calibration of KITTI, by the folders of the images; empty: they name none.
+  std::optional<KittiCameras> kitti_cameras = std::nullopt;
+  std::optional<DisparityRange> disparities = std::nullopt;  ///< to search; empty: those of the run
+
+  friend bool operator==(const PairDetails&, const PairDetails&) = default;
 };
 
 /// A pair of frames from a source: fetched in order by one thread, decoded by any. Memory is reused
@@ -35,6 +48,7 @@ struct FramePair {
   std::vector<FetchedFrame> more_fetched;
   std::vector<Photograph> more;
   std::vector<std::string> remarks;  ///< about the frames, and about the pair
+  PairDetails details;               ///< see PairSource::details(), of this pair
 };
 
 /// Pairs of the input that a run takes: pair `first` and every `pairs`-th after it.
@@ -70,8 +84,10 @@ struct PairSourceOptions {
   FrameRate raw_rate;
   const std::atomic<bool>* stop = nullptr;  ///< "-": reading ends once it is set
   /// A CSV file with the columns left,right: one pair of image files per line. Names are relative
-  /// to the file's folder; an optional heading "left,right", empty lines and lines that start with
-  /// # are skipped; quotes as in RFC 4180, blanks around unquoted fields are dropped.
+  /// to the file's folder; empty lines and lines that start with # are skipped; quotes as in RFC
+  /// 4180, blanks around unquoted fields are dropped. A heading names the columns, in any order:
+  /// left, right, and for PairDetails name, calibration (relative to the file's folder),
+  /// min-disparity and max-disparity (both or none). Empty fields: as without the column.
   std::string pairs;
   /// One moving camera: frame t is the left image and frame t + step the right one (step < 0: the
   /// camera moved to the left). |step| in 1..1000.
@@ -120,6 +136,11 @@ class PairSource {
   [[nodiscard]] virtual int input_frames() const { return pair_count(); }
   /// Number of decoded frames, no larger than photographs, that the source itself keeps in memory.
   [[nodiscard]] virtual int frames_kept() const { return 0; }
+  /// Of a list with further columns.
+  [[nodiscard]] virtual PairDetails details(int index) const {
+    (void)index;
+    return {};
+  }
   /// "left/000012.png, right/000012.png" or "film.mp4 frame 12".
   [[nodiscard]] virtual std::string describe(int index) const = 0;
   /// Remarks on the pairing as a whole, one line each: frames left over on one side ("the left

@@ -48,6 +48,7 @@ struct FileRecord {
 /// Outcome of one frame.
 struct FrameRecord {
   int frame = 0;
+  std::string name = {};  ///< of its files, instead of its number: PairDetails::name
   bool skipped = false;
   bool absent = false;                    ///< the input ends before it: no results
   std::string problem = {};               ///< why it was skipped
@@ -56,7 +57,7 @@ struct FrameRecord {
   FlickerSums flicker = {};  ///< all 0 if not measured
   std::optional<FrameComfort> comfort = {};
   /// Empty unless depth resolutions are written, and where no disparity is known.
-  std::optional<DisparityQuantiles> disparities = {};
+  std::optional<DisparitiesAndScale> disparities = {};
 };
 
 /// All videos have a segment of these frames.

@@ -64,8 +64,10 @@ bool SequenceLayout::has_videos() const {
   return std::ranges::any_of(streams_, &OutputStream::as_video);
 }
 
-fs::path SequenceLayout::file(const OutputStream& stream, int frame, const std::string& extension) {
-  return fs::path(stream.name) / fmt::format("{:06}.{}", frame, extension);
+fs::path SequenceLayout::file(const OutputStream& stream, int frame, const std::string& name,
+                              const std::string& extension) {
+  return fs::path(stream.name) /
+         (name.empty() ? fmt::format("{:06}.{}", frame, extension) : name + "." + extension);
 }
 
 fs::path SequenceLayout::video(const OutputStream& stream) const {

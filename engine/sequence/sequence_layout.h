@@ -25,6 +25,7 @@ struct OutputStream {
 
 /// Where the files of a run are:
 ///   DIR/disparity/000000.pfm, DIR/views/000000.png (one view) or DIR/views/0.25/000000.png …
+///   DIR/disparity/NAME.pfm …                         of a list of pairs with names
 ///   DIR/preview.mp4, DIR/views/0.25.mp4 …            what is written as video
 ///   DIR/depth-video.mkv (.mp4, .mov), .json          the depth video, what its levels stand for
 ///   DIR/comfort.json, comfort.html                   the report on comfort
@@ -40,8 +41,9 @@ class SequenceLayout {
   [[nodiscard]] const std::vector<OutputStream>& streams() const { return streams_; }
   [[nodiscard]] bool has_videos() const;
 
-  /// `extension` is without the dot. Relative to the folder.
+  /// `name`: PairDetails::name. `extension` is without the dot. Relative to the folder.
   [[nodiscard]] static std::filesystem::path file(const OutputStream& stream, int frame,
+                                                  const std::string& name,
                                                   const std::string& extension);
   [[nodiscard]] std::filesystem::path video(const OutputStream& stream) const;
   [[nodiscard]] std::filesystem::path segment(const OutputStream& stream, FrameRange frames) const;

@@ -124,6 +124,36 @@ void check_method_of_outputs(const SequenceOptions& options) {
   }
 }
 
+void check_unrectified(const SequenceOptions& options) {
+  if (options.unrectified == UnrectifiedSearch::kNone) {
+    return;
+  }
+  const auto refuse = [](bool is_used, std::string_view what, std::string_view why) {
+    if (is_used) {
+      throw UsageError(fmt::format("{} cannot be used with unrectified: {}", what, why));
+    }
+  };
+  constexpr std::string_view kFractions = "candidates differ by fractions from pixel to pixel";
+  refuse(!options.baselines.empty(), "baselines", "a calibration is of two cameras");
+  refuse(options.match.resolved().selection == Selection::kSymmetric, "selection symmetric",
+         "pixels of both photographs lie on different epipolar lines");
+  refuse(options.saves_posterior(), "save posterior-mean and posterior-variance", kFractions);
+  refuse(options.temporal.weight > 0, "temporal-prior", kFractions);
+  refuse(options.temporal.reuse != Reuse::kNone, "reuse", "tiles of rows are kept");
+  if (options.unrectified == UnrectifiedSearch::kOnRectified) {
+    return;
+  }
+  for (const SequenceOutput output : options.save) {
+    if (is_per_view(output) || is_metric(output) || output == SequenceOutput::kStereo ||
+        output == SequenceOutput::kComfort) {
+      throw UsageError(
+          fmt::format("save has {} with unrectified, which belongs to rectified pixels, expected "
+                      "rectified-pixels too",
+                      name_of(output)));
+    }
+  }
+}
+
 void check_views(const SequenceOptions& options) {
   const bool wanted = std::ranges::any_of(options.save, is_per_view);
   if (wanted && options.views.empty()) {
@@ -282,6 +312,7 @@ void SequenceOptions::validate() const {
   check_temporal(*this);
   check_baselines(*this);
   check_method_of_outputs(*this);
+  check_unrectified(*this);
   if (match.disparities_y) {
     throw UsageError("disparities-y is set, expected none: sequences consist of rectified pairs");
   }

@@ -88,6 +88,13 @@ enum class FitScope {
   kShot    ///< once for all frames between two cuts
 };
 
+/// Whether rectification is part of the search (UnrectifiedMatcher), and whose pixels maps have.
+enum class UnrectifiedSearch {
+  kNone,           ///< pairs are rectified, if needed before the search
+  kOnPhotographs,  ///< maps are on the pixels of the photographs
+  kOnRectified     ///< they are brought to those of the rectified images
+};
+
 /// Everything that determines which files a sequence run writes and their content.
 struct SequenceOptions {
   MatchOptions match;  ///< without disparities_y
@@ -95,6 +102,7 @@ struct SequenceOptions {
   /// positive. Empty: pairs. Maps are then of all images at once (StereoMatcher::match_several()),
   /// without a cross-check.
   std::vector<double> baselines;
+  UnrectifiedSearch unrectified = UnrectifiedSearch::kNone;
   SynthesisOptions synthesis;
   std::vector<SequenceOutput> save = {SequenceOutput::kDisparity};  ///< at least one
   /// Outputs of `save` written as one H.264 video each instead of an image per frame; not maps of

@@ -62,8 +62,8 @@ class Run {
         run_(run),
         layout_(layout),
         execution_(execution),
-        worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.cameras,
-                 run.map_camera, run.poses, run.shots, execution, accounts_}),
+        worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.pair_cameras,
+                 run.cameras, run.map_camera, run.poses, run.shots, execution, accounts_}),
         feed_(std::move(work)),
         stored_(std::move(stored)),
         segments_(options, layout, worker_, run.frame_size.value_or(ImageExtent()), execution),
@@ -147,7 +147,8 @@ class Run {
     }
     const Clock::time_point start = Clock::now();
     const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kWrite));
-    FrameRecord record{.frame = slot.frame, .files = std::move(slot.file_records)};
+    FrameRecord record{
+        .frame = slot.frame, .name = slot.pair.details.name, .files = std::move(slot.file_records)};
     record.comfort = slot.comfort;
     record.disparities = slot.disparities;
     record.flicker = flicker_.add(slot);

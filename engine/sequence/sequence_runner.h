@@ -13,6 +13,7 @@
 #include "engine/rectification/rectifier.h"
 #include "engine/reprojection/map_camera.h"
 #include "engine/sequence/frame_poses.h"
+#include "engine/sequence/pair_cameras.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"
@@ -91,8 +92,10 @@ struct SequenceReport {
 struct SequenceRun {
   PairSource& pairs;
   FrameSelection selection;
-  std::optional<ImageExtent> frame_size;   ///< required for all frames; must be set for videos
-  const Rectifier* rectifier = nullptr;    ///< null: the pairs are rectified
+  std::optional<ImageExtent> frame_size;  ///< required for all frames; must be set for videos
+  /// Null: the pairs are rectified. Must be set for a search with UnrectifiedSearch.
+  const Rectifier* rectifier = nullptr;
+  PairCameras* pair_cameras = nullptr;     ///< must be set if pairs have calibrations of their own
   const RectifiedPair* cameras = nullptr;  ///< of the pairs; must be set for camera views
   const MapCamera* map_camera = nullptr;   ///< of the reference's map; must be set if is_metric()
   const FramePoses* poses = nullptr;       ///< with map_camera: points are in their world

@@ -11,16 +11,22 @@ constexpr std::size_t kKept = 2;
 }  // namespace
 
 ShotMatchers::ShotMatchers(const MatchOptions& options, const ShotTable* shots,
-                           Execution& execution)
-    : options_(options), shots_(shots), execution_(execution) {
-  latest_.push_back(std::make_shared<const ShotMatcher>(options_, execution_));
+                           const Rectifier* rectifier, Execution& execution)
+    : options_(options),
+      shots_(shots),
+      rectifier_(rectifier),
+      grids_(rectifier != nullptr ? epipolar_grids(*rectifier, execution) : nullptr),
+      execution_(execution) {
+  latest_.push_back(std::make_shared<const ShotMatcher>(options_, rectifier_, grids_, execution_));
 }
 
-std::shared_ptr<const ShotMatcher> ShotMatchers::of(int frame) const {
+std::shared_ptr<const ShotMatcher> ShotMatchers::of(
+    int frame, const std::optional<DisparityRange>& of_pair) const {
   DisparityRange range = options_.disparities;
   if (shots_ != nullptr) {
     range = shots_->shot_of(frame).search.value_or(range);
   }
+  range = of_pair.value_or(range);
   const std::scoped_lock lock(mutex_);
   const auto known = std::ranges::find_if(
       latest_, [&](const auto& one) { return one->options.disparities == range; });
@@ -30,7 +36,7 @@ std::shared_ptr<const ShotMatcher> ShotMatchers::of(int frame) const {
   }
   MatchOptions options = options_;
   options.disparities = range;
-  latest_.push_front(std::make_shared<const ShotMatcher>(options, execution_));
+  latest_.push_front(std::make_shared<const ShotMatcher>(options, rectifier_, grids_, execution_));
   if (latest_.size() > kKept) {
     latest_.pop_back();
   }

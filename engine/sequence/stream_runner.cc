@@ -24,8 +24,8 @@ class StreamRun {
         layout_(layout),
         writer_(writer),
         execution_(execution),
-        worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.cameras, nullptr,
-                 nullptr, nullptr, execution, accounts_}),
+        worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.pair_cameras,
+                 run.cameras, nullptr, nullptr, nullptr, execution, accounts_}),
         slots_(static_cast<std::size_t>(run.in_flight)),
         feed_({run_of(run.selection, dependence_of(options, layout), run.selection.own())}) {
     report_.in_flight = run.in_flight;

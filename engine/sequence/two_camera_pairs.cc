@@ -69,6 +69,7 @@ bool TwoCameraPairs::fetch(FramePair& pair) {
     return false;
   }
   pair.index = next_index_;
+  pair.details = details(next_index_);
   pair.remarks.clear();
   std::exception_ptr problem;
   const bool has_left = fetch_from(*left_, pair.fetched[0], problem);

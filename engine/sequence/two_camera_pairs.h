@@ -3,6 +3,7 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/sequence/pair_source.h"
@@ -17,6 +18,9 @@ class TwoCameraPairs final : public PairSource {
   TwoCameraPairs(std::unique_ptr<FrameSource> left, std::unique_ptr<FrameSource> right,
                  int offset_frames, bool numbers_matter);
 
+  /// Of all pairs, from a list.
+  void set_details(std::vector<PairDetails> details) { details_ = std::move(details); }
+
   [[nodiscard]] const FrameSource& left() const { return *left_; }
   /// Frame of the left camera in pair 0.
   [[nodiscard]] int first_left() const { return first_left_; }
@@ -24,6 +28,9 @@ class TwoCameraPairs final : public PairSource {
   bool fetch(FramePair& pair) override;
   void skip_to(int index) override;
   [[nodiscard]] int pair_count() const override { return pair_count_; }
+  [[nodiscard]] PairDetails details(int index) const override {
+    return details_.empty() ? PairDetails{} : details_.at(static_cast<std::size_t>(index));
+  }
   [[nodiscard]] std::string describe(int index) const override;
   [[nodiscard]] std::vector<std::string> remarks() const override;
   [[nodiscard]] int unpaired_frames() const override;
@@ -44,7 +51,8 @@ class TwoCameraPairs final : public PairSource {
   std::unique_ptr<FrameSource> left_;
   std::unique_ptr<FrameSource> right_;
   bool numbers_matter_;
-  int first_left_;  // frame of pair 0
+  std::vector<PairDetails> details_;  // empty, or of all pairs
+  int first_left_;                    // frame of pair 0
   int first_right_;
   int pair_count_;
   int next_index_ = 0;

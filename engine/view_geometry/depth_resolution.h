@@ -12,6 +12,8 @@ struct DepthScale {
   double focal_length_px = 1;  ///< f, above 0
   double baseline = 1;         ///< b, above 0; its unit is that of depths
   double doffs_px = 0;         ///< cx of the right − cx of the left image
+
+  friend bool operator==(const DepthScale&, const DepthScale&) = default;
 };
 
 /// Depth at a disparity; empty at infinity and beyond.
@@ -28,6 +30,12 @@ struct DisparityQuantiles {
   float nearest_px = 0;
   float median_px = 0;
   float farthest_px = 0;
+};
+
+/// Disparities of a map and what makes depths of them.
+struct DisparitiesAndScale {
+  DisparityQuantiles disparities;
+  DepthScale scale;
 };
 
 /// Empty if no disparity is known.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/apps/pair_fixture.h"
@@ -64,6 +65,59 @@ TEST_F(MatchUnrectified, MapsOnRectifiedPixelsMakeViews) {
       {"synth", left_, right_, "--calibration", rig_, "--left-disparity", folder_ / "m.pfm",
        "--right-disparity", folder_ / "r.pfm", "--view", "0.5", "-o", folder_ / "view.png"});
   EXPECT_EQ(view.exit_code, 0) << view.err;
+}
+
+TEST_F(MatchUnrectified, RunMakesTheSame) {
+  write_file(folder_ / "list.csv", left_ + "," + right_ + "\n");
+  const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {
+        "run",           "--pairs", folder_ / "list.csv", "-o",  folder_ / out,
+        "--unrectified", rig_,      "--disparities",      "0:9", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_vantage(arguments);
+  };
+  const auto file = [&](const std::string& name) { return read_file(folder_ / name); };
+  ProcessResult result = run("maps", {"--save", "disparity,right-disparity,confidence,unmatched"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ASSERT_EQ(match(folder_ / "m.pfm",
+                  {"--unrectified", rig_, "--output-right", folder_ / "r.pfm", "--confidence",
+                   folder_ / "c.pfm", "--unmatched", folder_ / "u.png"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(file("maps/disparity/000000.pfm") == file("m.pfm"));
+  EXPECT_TRUE(file("maps/right-disparity/000000.pfm") == file("r.pfm"));
+  EXPECT_TRUE(file("maps/confidence/000000.pfm") == file("c.pfm"));
+  EXPECT_TRUE(file("maps/unmatched/000000.png") == file("u.png"));
+
+  result = run("views", {"--rectified-pixels", "--save", "disparity,right-disparity,views,depth",
+                         "--view", "0.5", "--baseline", "0.1", "--depth-format", "npy"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ASSERT_EQ(match(folder_ / "m.pfm", {"--unrectified", rig_, "--rectified-pixels", "--output-right",
+                                      folder_ / "r.pfm"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(file("views/disparity/000000.pfm") == file("m.pfm"));
+  EXPECT_TRUE(file("views/right-disparity/000000.pfm") == file("r.pfm"));
+  ASSERT_EQ(run_vantage({"synth", left_, right_, "--calibration", rig_, "--left-disparity",
+                         folder_ / "m.pfm", "--right-disparity", folder_ / "r.pfm", "--view", "0.5",
+                         "-o", folder_ / "view.png"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(file("views/views/000000.png") == file("view.png"));
+
+  for (const auto& [more, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--save", "views", "--view", "0.5"}, "save has views with unrectified"},
+           {{"--save", "depth", "--baseline", "1"}, "save has depth with unrectified"},
+           {{"--calibration", rig_}, "--calibration and --unrectified are both given"},
+           {{"--selection", "symmetric"}, "selection symmetric cannot be used with unrectified"},
+           {{"--temporal-prior", "1"}, "temporal-prior cannot be used with unrectified"},
+           {{"--save", "posterior-mean"}, "posterior-variance cannot be used with unrectified"},
+           {{"--no-tuning"}, "no-tuning has no effect with --unrectified"}}) {
+    result = run("wrong", more);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_TRUE(is_one_line(result, "run")) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(why));
+  }
 }
 
 TEST_F(MatchUnrectified, RefusesInOneLineAndLeavesNothing) {

@@ -114,6 +114,11 @@ TEST(LevelBands, EstimateTellsWhatDoesNotFit) {
   EXPECT_THAT(memory_obstacle(options(MatchPreset::kBalanced), size, 6 * kGiB),
               testing::HasSubstr("8192x8192 pixels with 512 disparities need about "));
   EXPECT_EQ(memory_obstacle(options(MatchPreset::kRealtime), size, 6 * kGiB), "");
+  // Along epipolar lines the other image is sampled 16 times; nothing is searched in reduced
+  // images.
+  EXPECT_GT(
+      matching_bytes(options(MatchPreset::kRealtime), {.image = size.image, .along_lines = true}),
+      matching_bytes(options(MatchPreset::kRealtime), size) + 16 * kGiB);
   // Without bands.
   EXPECT_GT(matching_bytes(options(MatchPreset::kBalanced),
                            {.image = size.image, .level_bytes = 100 * kGiB}),

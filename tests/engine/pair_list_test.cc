@@ -61,8 +61,9 @@ TEST(PairList, Quotes) {
 
 TEST(PairList, MalformedLinesAreNamed) {
   EXPECT_EQ(problem("a,b\n\n#\nc\n"), "list.csv line 4: 1 field, expected two: left,right");
-  EXPECT_EQ(problem("a,b,c"), "list.csv line 1: 3 fields, expected two: left,right");
-  EXPECT_EQ(problem("a,b,"), "list.csv line 1: 3 fields, expected two: left,right");
+  EXPECT_EQ(problem("a,b,c"),
+            "list.csv line 1: 3 fields, expected two: left,right; further columns need a heading");
+  EXPECT_THAT(problem("a,b,"), HasSubstr("list.csv line 1: 3 fields, expected two: left,right"));
   EXPECT_THAT(problem("\"a\nb\",c\n,d"), HasSubstr("line 3: the left name is empty"));
   EXPECT_THAT(problem("a,\"\""), HasSubstr("line 1: the right name is empty"));
   EXPECT_THAT(problem("a,b\r\nc,\"d\r\ne,f\r\n"), HasSubstr("line 2: a quote is not closed"));
@@ -71,6 +72,61 @@ TEST(PairList, MalformedLinesAreNamed) {
   EXPECT_THAT(problem("a,b\0"s), HasSubstr("list.csv: holds a zero byte"));
   for (const char* nothing : {"", "\n", "left,right\n", "# a,b", "\xEF\xBB\xBF", "\r\n\r\n"}) {
     EXPECT_THAT(problem(nothing), HasSubstr("list.csv: holds no pairs")) << nothing;
+  }
+}
+
+TEST(PairList, AHeadingNamesFurtherColumnsInAnyOrder) {
+  const auto pairs = parse_pair_list(
+      "Name,right,left,max-disparity,min-disparity,calibration\n"
+      "tower,b.png,a.png,40,-3,rigs/one.yml\n"
+      ",d.png,c.png,,,\n",
+      "folder/list.csv");
+  ASSERT_EQ(pairs.size(), 2U);
+  EXPECT_EQ(pairs[0].left, "a.png");
+  EXPECT_EQ(pairs[0].right, "b.png");
+  EXPECT_EQ(pairs[0].details, (PairDetails{.name = "tower",
+                                           .calibration = "folder/rigs/one.yml",
+                                           .disparities = DisparityRange{-3, 40}}));
+  EXPECT_EQ(pairs[1].left, "c.png");
+  EXPECT_EQ(pairs[1].details, PairDetails());
+}
+
+TEST(PairList, FoldersOfAPairNameItsCamerasOfKitti) {
+  const auto pairs = parse_pair_list(
+      "left,right,calibration\nimage_2/a.png,image_3/a.png,c.txt\nimage_0/a.png,image_1/"
+      "a.png,c.txt\n"
+      "image_2/a.png,image_1/a.png,c.txt\nimage_2/a.png,image_3/a.png,\n",
+      "list.csv");
+  EXPECT_EQ(pairs[0].details.kitti_cameras, KittiCameras::kColour);
+  EXPECT_EQ(pairs[1].details.kitti_cameras, KittiCameras::kGrey);
+  EXPECT_EQ(pairs[2].details.kitti_cameras, std::nullopt);
+  EXPECT_EQ(pairs[3].details, PairDetails());
+}
+
+TEST(PairList, WrongColumnsAndFieldsAreNamed) {
+  EXPECT_EQ(problem("left,right,width\na,b,3"),
+            "list.csv line 1: the column 'width' is not known, expected left, right, name, "
+            "calibration, min-disparity, max-disparity");
+  EXPECT_THAT(problem("left,right,name,NAME\n"), HasSubstr("the column name is given twice"));
+  EXPECT_THAT(problem("left,right,min-disparity\n"),
+              HasSubstr("one of the columns min-disparity and max-disparity is missing"));
+  EXPECT_EQ(problem("left,right,name\na,b"),
+            "list.csv line 2: 2 fields, expected 3 as in the "
+            "heading");
+  for (const char* name : {"a/b", "..", ".hidden", "a\\b", "\"a\tb\"", "caf\xe9"}) {
+    EXPECT_THAT(problem("left,right,name\na,b,"s + name), HasSubstr("line 2: the name is '"))
+        << name;
+  }
+  EXPECT_EQ(problem("left,right,name\na,b,x\na,b,y\na,b,x"),
+            "list.csv line 4: the name 'x' is that of line 2, too, expected different names");
+  // --every may give any pair any number.
+  EXPECT_THAT(problem("left,right,name\na,b,\na,b,x\na,b,0000001\n"),
+              HasSubstr("line 4: the name '0000001' looks like the number of a pair"));
+  EXPECT_EQ(parse_pair_list("left,right,name\na,b,000001\na,b,12\n", "list.csv").size(), 2U);
+  for (const char* range : {"5,4", "0,", ",9", "1.5,9", "a,b", "0,9px"}) {
+    EXPECT_THAT(problem("left,right,min-disparity,max-disparity\na,b,"s + range),
+                HasSubstr("line 2: the disparities are '"))
+        << range;
   }
 }
 

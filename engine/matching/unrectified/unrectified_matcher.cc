@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/error.h"
@@ -11,6 +13,7 @@
 #include "engine/matching/costs/cost_image.h"
 #include "engine/matching/map_search.h"
 #include "engine/matching/match_inputs.h"
+#include "engine/matching/match_memory.h"
 #include "engine/matching/stage_clock.h"
 #include "engine/refinement/refine_maps.h"
 
@@ -40,13 +43,18 @@ ResolvedMatchOptions along_lines(const MatchOptions& options) {
 
 }  // namespace
 
+void UnrectifiedMatcher::validate(MatchOptions options) {
+  options.disparities_auto = false;
+  (void)along_lines(options);
+}
+
 UnrectifiedMatcher::UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier,
+                                       std::shared_ptr<const EpipolarGrids> grids,
                                        Execution& execution)
     : in_force_(along_lines(options)),
       rectifier_(rectifier),
       execution_(execution),
-      grids_{EpipolarGrid(rectifier, Side::kLeft, execution),
-             EpipolarGrid(rectifier, Side::kRight, execution)} {
+      grids_(std::move(grids)) {
   if (uses_pair_exposure(in_force_.parameters)) {
     exposure_ = std::make_unique<PairExposureEstimator>(in_force_.disparities, execution_);
   }
@@ -58,7 +66,7 @@ void UnrectifiedMatcher::search(Side side, const std::array<const Photograph*, 2
                                 MatchedMap& map, MatchReport& report) const {
   const Photograph& reference = *photographs[index_of(side)];
   const Photograph& other = *photographs[index_of(other_side(side))];
-  const EpipolarGrid& grid = grids_[index_of(side)];
+  const EpipolarGrid& grid = (*grids_)[index_of(side)];
   const auto geometry =
       candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
   const auto changes_of = [&](Side image) {
@@ -102,7 +110,7 @@ void UnrectifiedMatcher::search(Side side, const std::array<const Photograph*, 2
 
 void UnrectifiedMatcher::check(Side side, const DisparityMap& other_px, double tolerance_px,
                                DisparityMap& map_px) const {
-  const EpipolarGrid& grid = grids_[index_of(side)];
+  const EpipolarGrid& grid = (*grids_)[index_of(side)];
   const int direction = direction_of(side);
   execution_.for_each_band(map_px.height(), [&](int first, int end) {
     for (int y = first; y < end; ++y) {
@@ -129,6 +137,16 @@ void UnrectifiedMatcher::match(const Photograph& left, const Photograph& right,
                                const UnrectifiedRequest& request, DisparityMaps& maps,
                                MatchReport* report) const {
   require_equal_sizes(left, "left image", right, "right image");
+  const std::string obstacle = memory_obstacle(
+      in_force_,
+      {.image = {left.width(), left.height()},
+       .channels = left.channels(),
+       .along_lines = true,
+       .level_bytes = execution_.options().level_memory_bytes.value_or(kDefaultLevelBytes)},
+      execution_.machine().memory_bytes);
+  if (!obstacle.empty()) {
+    throw Error(obstacle);
+  }
   MatchReport own_report;
   MatchReport& times = report != nullptr ? *report : own_report;
   times = {};

@@ -32,7 +32,14 @@ class UnrectifiedMatcher {
   /// Throws UsageError for invalid options, and for those that need rows: a search in two
   /// dimensions, selection symmetric, a cross-check of coarse levels. `rectifier` and `execution`
   /// must outlive it. Takes 16 bytes per pixel and image.
-  UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier, Execution& execution);
+  UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier, Execution& execution)
+      : UnrectifiedMatcher(options, rectifier, epipolar_grids(rectifier, execution), execution) {}
+  /// Throws UsageError as the constructor does, but for a range that is to be found.
+  static void validate(MatchOptions options);
+
+  /// The same with grids of `rectifier` that others use, too.
+  UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier,
+                     std::shared_ptr<const EpipolarGrids> grids, Execution& execution);
 
   /// Photographs of the rectifier's size. Always makes the masks. Errors as StereoMatcher::match().
   void match(const Photograph& left, const Photograph& right, const UnrectifiedRequest& request,
@@ -52,7 +59,7 @@ class UnrectifiedMatcher {
   const Rectifier& rectifier_;
   Execution& execution_;
   std::unique_ptr<PairExposureEstimator> exposure_;  ///< null: nothing is estimated
-  std::array<EpipolarGrid, 2> grids_;                ///< of the left and of the right reference
+  std::shared_ptr<const EpipolarGrids> grids_;
 };
 
 }  // namespace vantage
