@@ -14,9 +14,10 @@ namespace vantage::python {
 namespace py = pybind11;
 
 MatchResult::MatchResult(const PairMatcher& matcher, Execution& execution, MatchedImages images,
-                         Wanted wanted)
-    : execution_(execution), images_(std::move(images)) {
+                         Wanted wanted, std::shared_ptr<const UnrectifiedPairs> unrectified)
+    : execution_(execution), images_(std::move(images)), unrectified_(std::move(unrectified)) {
   computed_.options = matcher.options();
+  computed_.on_photographs = unrectified_ && !unrectified_->on_rectified();
   if (wanted.other && !images_.is_pair()) {
     throw UsageError("right_disparity cannot be had of several images: the first one has a map");
   }
@@ -34,7 +35,9 @@ void MatchResult::match(const PairMatcher& matcher, const std::vector<Photograph
   if (wanted.posterior) {
     request.volumes = {&posterior, 1};
   }
-  computed.options = images_.match(matcher, photographs, request, computed.maps);
+  computed.options = unrectified_ ? unrectified_->match(matcher.options(), photographs[0],
+                                                        photographs[1], request, computed.maps)
+                                  : images_.match(matcher, photographs, request, computed.maps);
   if (wanted.posterior) {
     computed.posterior = {moments.mean_px().copy(), moments.variance_px2().copy()};
   }
@@ -49,6 +52,11 @@ void MatchResult::require(Wanted wanted, const char* asked_for) {
     throw Error(fmt::format(
         "{} depends on more than the images of the frame, expected it in save of the Sequence",
         asked_for));
+  }
+  if (unrectified_ && wanted.posterior) {
+    throw UsageError(
+        "posterior cannot be used with unrectified: candidates differ by fractions from pixel to "
+        "pixel");
   }
   const PairMatcher matcher(computed_.options, execution_);
   ComputedMaps rest;
@@ -145,23 +153,39 @@ py::array MatchResult::preview() const {
                   ChannelOrder::kRgb);
 }
 
+void MatchResult::require_rectified(const char* asked_for) const {
+  if (computed_.on_photographs) {
+    throw UsageError(fmt::format(
+        "{} is of rectified pixels, expected rectified_pixels=True beside unrectified", asked_for));
+  }
+}
+
+std::optional<StereoCalibration> MatchResult::cameras(
+    const std::optional<StereoCalibration>& given) const {
+  return given || !unrectified_ ? given
+                                : unrectified_->rectified_cameras(map().disparity_px.width(),
+                                                                  map().disparity_px.height());
+}
+
 py::array MatchResult::depth(const std::optional<StereoCalibration>& calibration,
                              const py::dict& keywords) const {
+  require_rectified("depth");
   const MetricOptions options = metric_options(MetricOutput::kDepth, keywords);
   return array_of(without_gil([&] {
     const MetricCamera camera =
-        metric_camera(metric_map(), calibration, options, MetricOutput::kDepth);
+        metric_camera(metric_map(), cameras(calibration), options, MetricOutput::kDepth);
     return depths(metric_map(), camera, options, execution_);
   }));
 }
 
 py::array MatchResult::depth_resolution(const std::optional<StereoCalibration>& calibration,
                                         const py::dict& keywords) const {
+  require_rectified("depth_resolution");
   const MetricOptions options = metric_options(MetricOutput::kDepthResolution, keywords);
   const bool has_fractions = computed_.options.resolved().subpixel != Subpixel::kNone;
   return array_of(without_gil([&] {
     const MetricCamera camera =
-        metric_camera(metric_map(), calibration, options, MetricOutput::kDepthResolution);
+        metric_camera(metric_map(), cameras(calibration), options, MetricOutput::kDepthResolution);
     return depth_resolutions(metric_map(), camera, options, has_fractions ? 0.1 : 1, execution_);
   }));
 }
@@ -169,16 +193,23 @@ py::array MatchResult::depth_resolution(const std::optional<StereoCalibration>& 
 template <typename Make>
 auto MatchResult::make_points(const std::optional<StereoCalibration>& calibration,
                               const py::dict& keywords, const Make& make) {
+  require_rectified("a cloud or mesh");
   const MetricOptions options = metric_options(MetricOutput::kPoints, keywords);
   const MetricCamera camera =
-      metric_camera(metric_map(), calibration, options, MetricOutput::kPoints);
+      metric_camera(metric_map(), cameras(calibration), options, MetricOutput::kPoints);
   if (options.cloud.reads_confidence()) {
     require({.confidence = true}, "confidence");
   }
   return without_gil([&] {
     const std::vector<Photograph> photographs = images_.read_again("the colours of points");
+    const Photograph* colours = &photographs[images_.reference(side())];
+    Photograph rectified;
+    if (unrectified_) {
+      rectified = unrectified_->rectified(*colours, side());
+      colours = &rectified;
+    }
     const CloudSource source{.disparity_px = map().disparity_px.view(),
-                             .colours = &photographs[images_.reference(side())],
+                             .colours = colours,
                              .unmatched = map().unmatched.view(),
                              .confidence = map().confidence.view(),
                              .camera = camera.camera};

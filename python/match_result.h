@@ -3,6 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "engine/vantage.h"
 #include "python/matched_images.h"
 #include "python/metres.h"
+#include "python/unrectified_pairs.h"
 
 namespace vantage::python {
 
@@ -46,6 +48,7 @@ struct ComputedMaps {
   std::optional<PreviewRange> preview = std::nullopt;  ///< default: the range that was searched
   /// Nothing else can be computed of the images alone.
   bool is_final = false;
+  bool on_photographs = false;  ///< the images are not rectified
 };
 
 /// The maps of images. Those that were not wanted at once are computed when they are asked for,
@@ -53,8 +56,9 @@ struct ComputedMaps {
 /// time, as the GIL has it.
 class MatchResult {
  public:
-  MatchResult(const PairMatcher& matcher, Execution& execution, MatchedImages images,
-              Wanted wanted);
+  /// `unrectified`: what matches the images instead of `matcher`, with its options; null: nothing.
+  MatchResult(const PairMatcher& matcher, Execution& execution, MatchedImages images, Wanted wanted,
+              std::shared_ptr<const UnrectifiedPairs> unrectified);
   /// Of maps that have been computed.
   MatchResult(Execution& execution, MatchedImages images, ComputedMaps computed)
       : execution_(execution), images_(std::move(images)), computed_(std::move(computed)) {}
@@ -99,8 +103,15 @@ class MatchResult {
   auto make_points(const std::optional<StereoCalibration>& calibration,
                    const pybind11::dict& keywords, const Make& make);
 
+  /// Throws UsageError unless the map is of rectified pixels.
+  void require_rectified(const char* asked_for) const;
+  /// `given`, or those of photographs that are not rectified.
+  [[nodiscard]] std::optional<StereoCalibration> cameras(
+      const std::optional<StereoCalibration>& given) const;
+
   Execution& execution_;
   MatchedImages images_;
+  std::shared_ptr<const UnrectifiedPairs> unrectified_;  ///< null: pairs are rectified
   ComputedMaps computed_;
 };
 

@@ -33,8 +33,19 @@ MatchedImages ImageArguments::images() const {
   return {std::move(arrays), baselines};
 }
 
-Matcher::Matcher(const py::dict& keywords)
+Matcher::Matcher(const std::optional<StereoCalibration>& unrectified, bool on_rectified,
+                 const py::dict& keywords)
     : setup_(match_setup(keywords)), matcher_(setup_.options, *setup_.execution) {
+  if (unrectified) {
+    UnrectifiedMatcher::validate(setup_.options);
+    if (keywords.contains("cross_check_level") && !keywords["cross_check_level"].is_none()) {
+      throw UsageError("cross-check-level has no effect with unrectified: whole maps are compared");
+    }
+    unrectified_ =
+        std::make_shared<const UnrectifiedPairs>(*unrectified, on_rectified, *setup_.execution);
+  } else if (on_rectified) {
+    throw UsageError("rectified-pixels has no effect without unrectified");
+  }
   for (const char* const option : {"cross_check", "cross_check_level"}) {
     if (keywords.contains(option) && !keywords[option].is_none()) {
       pair_option_ = option;
@@ -61,10 +72,26 @@ void Matcher::check(const ImageArguments& arguments) const {
   }
 }
 
+void Matcher::check_unrectified(const ImageArguments& arguments, Wanted wanted) const {
+  if (!unrectified_) {
+    return;
+  }
+  if (!arguments.baselines.empty()) {
+    throw UsageError("baselines cannot be used with unrectified: a calibration is of two cameras");
+  }
+  if (wanted.posterior) {
+    throw UsageError(
+        "posterior cannot be used with unrectified: candidates differ by fractions from pixel to "
+        "pixel");
+  }
+}
+
 std::unique_ptr<MatchResult> Matcher::compute(const ImageArguments& arguments,
                                               Wanted wanted) const {
   check(arguments);
-  return std::make_unique<MatchResult>(matcher_, *setup_.execution, arguments.images(), wanted);
+  check_unrectified(arguments, wanted);
+  return std::make_unique<MatchResult>(matcher_, *setup_.execution, arguments.images(), wanted,
+                                       unrectified_);
 }
 
 py::dict Matcher::options() {
@@ -89,7 +116,7 @@ std::string Matcher::text() const {
 
 void bind_matcher(py::module_& module) {
   py::class_<Matcher>(module, "Matcher")
-      .def(py::init<const py::dict&>())
+      .def(py::init<const std::optional<StereoCalibration>&, bool, const py::dict&>())
       .def("compute",
            [](const Matcher& self, const py::object& left, const py::object& right,
               const py::list& more, const std::vector<double>& baselines, bool bgr, bool other,

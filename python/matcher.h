@@ -10,6 +10,7 @@
 #include "apps/match_settings.h"
 #include "engine/vantage.h"
 #include "python/match_result.h"
+#include "python/unrectified_pairs.h"
 
 namespace vantage::python {
 
@@ -36,7 +37,10 @@ struct ImageArguments {
 /// Matcher of the package.
 class Matcher {
  public:
-  explicit Matcher(const pybind11::dict& keywords);
+  /// `unrectified`: cameras of photographs that are not rectified; `on_rectified`: whose maps are
+  /// on the pixels of the rectified images.
+  Matcher(const std::optional<StereoCalibration>& unrectified, bool on_rectified,
+          const pybind11::dict& keywords);
 
   [[nodiscard]] std::unique_ptr<MatchResult> compute(const ImageArguments& arguments,
                                                      Wanted wanted) const;
@@ -50,9 +54,11 @@ class Matcher {
 
  private:
   void check(const ImageArguments& arguments) const;
+  void check_unrectified(const ImageArguments& arguments, Wanted wanted) const;
 
   MatchSetup setup_;
   PairMatcher matcher_;
+  std::shared_ptr<const UnrectifiedPairs> unrectified_;  ///< null: pairs are rectified
   std::optional<std::string> pair_option_;  ///< an option that is given, for pairs only
 };
 

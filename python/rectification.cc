@@ -1,4 +1,6 @@
 // Calibrations of cameras, and rectification of pairs.
+#include "python/rectification.h"
+
 #include <fmt/format.h>
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
@@ -115,18 +117,6 @@ StereoCalibration load_calibration(const py::object& path, bool already_rectifie
   return calibration;
 }
 
-/// Calibration of the rectified images.
-StereoCalibration calibration_of(const RectifiedPair& pair) {
-  StereoCalibration calibration;
-  calibration.left.matrix = pair.left.matrix;
-  calibration.right.matrix = pair.right.matrix;
-  calibration.translation = {-pair.baseline, 0, 0};
-  calibration.image_size = {pair.width_px, pair.height_px};
-  calibration.is_rectified = true;
-  calibration.format = "rectified calibration";
-  return calibration;
-}
-
 /// OpenCV's Q of rectified cameras: (x, y, d, 1) → homogeneous (X, Y, Z).
 Eigen::Matrix4d reprojection(const StereoCalibration& calibration) {
   if (!calibration.is_rectified) {
@@ -187,11 +177,8 @@ RectifiedImages rectify(const Photograph& left, const Photograph& right,
     result.row_error_px = rectification.remaining->rms_px;
     apply();
   }
-  result.calibration = calibration_of(rectifier.pair());
-  result.calibration.file = rectification.calibration.file;
   result.cameras = rectification.calibration;
-  result.calibration.metres_per_unit = result.cameras.metres_per_unit;
-  result.calibration.has_scale = result.cameras.has_scale;
+  result.calibration = rectified_calibration(rectifier.pair(), result.cameras);
   result.valid = rectifier.pair().valid;
   return result;
 }
@@ -237,6 +224,21 @@ constexpr const char* kDepthMatrixText =
     "Rectified cameras of OpenCV's 4x4 matrix Q, in its unit. Raises Error for another matrix.";
 
 }  // namespace
+
+StereoCalibration rectified_calibration(const RectifiedPair& pair,
+                                        const StereoCalibration& cameras) {
+  StereoCalibration calibration;
+  calibration.left.matrix = pair.left.matrix;
+  calibration.right.matrix = pair.right.matrix;
+  calibration.translation = {-pair.baseline, 0, 0};
+  calibration.image_size = {pair.width_px, pair.height_px};
+  calibration.is_rectified = true;
+  calibration.format = "rectified calibration";
+  calibration.file = cameras.file;
+  calibration.metres_per_unit = cameras.metres_per_unit;
+  calibration.has_scale = cameras.has_scale;
+  return calibration;
+}
 
 std::optional<StereoCalibration> calibration_from(const py::object& object) {
   if (object.is_none()) {

@@ -84,18 +84,23 @@ void open(const std::optional<StereoCalibration>& calibration, OpenSequence& ope
   apps::open_source(job, session);
   FramePair first;
   apps::read_first_pair(*session.pairs, first);
-  apps::prepare_pairs(job, calibration, knows_metres(job, calibration), first, execution, session);
+  const bool is_metric = job.sequence.unrectified != UnrectifiedSearch::kOnPhotographs &&
+                         knows_metres(job, calibration);
+  apps::prepare_pairs(job, calibration, is_metric, first, execution, session);
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   MatchOptions& match = job.sequence.match;
+  apps::use_ranges(session.columns, match);
   if (match.disparities_auto) {
     match.disparities =
         require_disparity_range(find_sequence_range(*session.pairs, rectify, execution));
     match.disparities_auto = false;
   }
   job.sequence.validate();
-  opened.in_flight = plan_memory(job.sequence, {job.in_flight, std::nullopt}, session.shape, first,
-                                 execution.options())
-                         .in_flight;
+  SequenceOptions planned = job.sequence;
+  planned.match.disparities = session.columns.widest_with(match.disparities);
+  opened.in_flight =
+      plan_memory(planned, {job.in_flight, std::nullopt}, session.shape, first, execution.options())
+          .in_flight;
   if (job.sequence.needs_shots()) {
     SurveyHooks hooks;
     hooks.in_flight = opened.in_flight;
@@ -169,13 +174,16 @@ class FrameLoop {
   [[nodiscard]] ComputedMaps maps_of(ComputedFrame& frame) const {
     const SequenceOptions& options = opened_->job.sequence;
     FrameSlot& slot = *frame.slot;
-    ComputedMaps computed{.options = options.match,
-                          .maps = std::move(slot.maps),
-                          .has = {.other = frame.has_both_maps,
-                                  .confidence = options.saves(SequenceOutput::kConfidence),
-                                  .posterior = options.saves_posterior()},
-                          .preview = frame.preview,
-                          .is_final = options.temporal.uses_past() || !options.baselines.empty()};
+    ComputedMaps computed{
+        .options = options.match,
+        .maps = std::move(slot.maps),
+        .has = {.other = frame.has_both_maps,
+                .confidence = options.saves(SequenceOutput::kConfidence),
+                .posterior = options.saves_posterior()},
+        .preview = frame.preview,
+        .is_final = options.temporal.uses_past() || !options.baselines.empty() ||
+                    options.unrectified != UnrectifiedSearch::kNone,
+        .on_photographs = options.unrectified == UnrectifiedSearch::kOnPhotographs};
     computed.options.disparities = frame.searched;
     if (options.saves_posterior()) {
       computed.posterior = {slot.posterior.mean_px().copy(), slot.posterior.variance_px2().copy()};
@@ -246,12 +254,15 @@ class FrameLoop {
 /// Sequence of the package.
 class Sequence {
  public:
-  Sequence(const std::optional<StereoCalibration>& calibration, py::dict keywords)
+  /// `is_unrectified`: rectification with `calibration` is part of the search.
+  Sequence(const std::optional<StereoCalibration>& calibration, bool is_unrectified,
+           py::dict keywords)
       : opened_(std::make_shared<OpenSequence>()) {
     apps::SequenceJob& job = opened_->job;
     opened_->execution = &take_execution(keywords);
     apps::Settings settings("", "");
     apps::add_input_settings(settings, job);
+    settings.flag("rectified-pixels", job.rectified_pixels, "");
     apps::add_save_setting(settings, job);
     apps::add_picture_settings(settings, job);
     apps::add_rig_scale_settings(settings, job.rig);
@@ -266,7 +277,8 @@ class Sequence {
     apps::add_synthesis_settings(settings, job.sequence.synthesis);
     set_options(settings, keywords);
     if (calibration) {
-      job.calibration = calibration->file.empty() ? "calibration" : calibration->file;
+      (is_unrectified ? job.unrectified : job.calibration) =
+          calibration->file.empty() ? "calibration" : calibration->file;
     }
     apps::read_pose_files(job.views);
     apps::complete_sequence(job, false);
@@ -301,7 +313,7 @@ void bind_sequence(py::module_& module) {
       .def("skipped", &FrameLoop::skipped)
       .def("flicker", &FrameLoop::flicker);
   py::class_<Sequence>(module, "Sequence")
-      .def(py::init<const std::optional<StereoCalibration>&, py::dict>())
+      .def(py::init<const std::optional<StereoCalibration>&, bool, py::dict>())
       .def("loop", &Sequence::loop)
       .def("selected", &Sequence::selected)
       .def("__len__", &Sequence::count);

@@ -96,6 +96,11 @@ std::size_t default_max_bytes(const Execution& execution) {
 
 py::tuple Matcher::volume(const ImageArguments& arguments, const py::dict& keywords) const {
   check(arguments);
+  if (unrectified_) {
+    throw UsageError(
+        "a volume cannot be had with unrectified: candidates differ by fractions from pixel to "
+        "pixel");
+  }
   std::size_t max_bytes = default_max_bytes(*setup_.execution);
   py::dict options = keywords.attr("copy")();
   if (const py::object given = options.attr("pop")("max_bytes", py::none()); !given.is_none()) {

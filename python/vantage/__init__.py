@@ -38,15 +38,21 @@ class Matcher:
     --preset on the command line.
     disparities: (MIN, MAX) or "MIN:MAX" in pixels, ends included; "auto": estimated for each pair.
     options: those of `vantage match` that concern matching, reference and threads.
+    unrectified: Calibration or a path, of photographs that are not rectified: epipolar lines are
+    searched instead of rows. Maps are on the pixels of the photographs, disparities those of the
+    rectified pair; rectified_pixels=True brings maps to the rectified images, for synthesize() and
+    for depth(), cloud() and mesh() of results, which then need no calibration.
 
     Several threads may use one matcher at a time.
     """
 
-    def __init__(self, preset="balanced", disparities="auto", **options):
+    def __init__(self, preset="balanced", disparities="auto", *, unrectified=None,
+                 rectified_pixels=False, **options):
         # A method is another choice than a preset.
         if preset == "balanced" and {"method", "aggregate", "disparities_y"} & options.keys():
             preset = None
         self._native = _vantage.Matcher(
+            _calibration_of(unrectified), rectified_pixels,
             {"preset": preset, "disparities": disparities, **options})
 
     def compute(self, left, right, *, more=(), baselines=(), bgr=False, right_disparity=False,
@@ -300,9 +306,9 @@ class Sequence:
     unless they depend on other frames.
     frames: range or slice of the pairs to go through, increasing, or "A-B" or "A-B:N" as for run;
     default all.
-    calibration: Calibration or a path, to rectify the pairs first. baseline, focal_length, doffs,
-    principal_point, calibration_unit: of results in metres, as for `vantage run`. poses: file of a
-    trajectory.
+    calibration: Calibration or a path, to rectify the pairs first. unrectified, rectified_pixels:
+    instead, as for Matcher. baseline, focal_length, doffs, principal_point, calibration_unit: of
+    results in metres, as for `vantage run`. poses: file of a trajectory.
     in_flight: frames that are computed ahead or wait, 1 to 64; default: threads + 2.
 
     Maps are those that `vantage run` writes. Frames are read, matched and rendered in other threads
@@ -314,17 +320,21 @@ class Sequence:
     changes of all frames, as the report of `vantage run` has them (None: not measured).
     """
 
-    def __init__(self, left=None, right=None, *, frames=None, calibration=None, preset=None,
-                 disparities="auto", save=None, **options):
+    def __init__(self, left=None, right=None, *, frames=None, calibration=None, unrectified=None,
+                 rectified_pixels=False, preset=None, disparities="auto", save=None, **options):
         if save is not None:
             names = save.split(",") if isinstance(save, str) else save
             options["save"] = [name.replace("_", "-") for name in names]
         if isinstance(frames, str):
             options["frames"] = frames
+        if calibration is not None and unrectified is not None:
+            raise UsageError("calibration and unrectified are both given, expected one of them")
         self._native = _vantage.Sequence(
-            _calibration_of(calibration, [side for side in (left, right) if side is not None]),
+            _calibration_of(calibration if unrectified is None else unrectified,
+                            [side for side in (left, right) if side is not None]),
+            unrectified is not None,
             {"left": left, "right": right, "preset": preset, "disparities": disparities,
-             **options})
+             "rectified_pixels": rectified_pixels or None, **options})
         self._frames = self._chosen(frames)
         self.skipped = []
         self.flicker = None

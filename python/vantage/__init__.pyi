@@ -49,7 +49,8 @@ class MatchResult:
 
 class Matcher:
     def __init__(
-        self, preset: _Preset = ..., disparities: _Range = ..., **options: Any
+        self, preset: _Preset = ..., disparities: _Range = ..., *, unrectified: _Rig = ...,
+        rectified_pixels: bool = ..., **options: Any
     ) -> None: ...
     def compute(
         self, left: _Image, right: _Image, *, more: _Sequence[_Image] = ...,
@@ -206,7 +207,8 @@ class Sequence:
     flicker: dict[str, Any] | None
     def __init__(
         self, left: _Path | None = ..., right: _Path | None = ..., *,
-        frames: range | slice | str | None = ..., calibration: _Rig = ..., preset: _Preset = ...,
+        frames: range | slice | str | None = ..., calibration: _Rig = ..., unrectified: _Rig = ...,
+        rectified_pixels: bool = ..., preset: _Preset = ...,
         disparities: _Range = ..., save: str | _Sequence[str] | None = ..., **options: Any
     ) -> None: ...
     def __len__(self) -> int: ...
