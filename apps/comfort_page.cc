@@ -54,7 +54,7 @@ std::string shot_table(const ComfortPage& page) {
     html += fmt::format(
         "<tr><td>{}</td><td>{}–{}</td><td>{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{:+.1f}</td>"
         "<td>{}</td></tr>\n",
-        clock_text(shot.span.first_frame / page.rate.per_second()), shot.span.first_frame,
+        clock_text(page.seconds(shot.span.first_frame)), shot.span.first_frame,
         shot.span.end_frame - 1, verdict_html(shot.verdict), shot.crossed_percent,
         shot.uncrossed_percent, shot.shift_px, why);
   }
@@ -102,7 +102,7 @@ std::string charts(const ComfortPage& page) {
   for (const auto& [number, frame] : page.frames) {
     const int bin = static_cast<int>(static_cast<long long>(number - first) *
                                      std::min(span, kMaxPoints) / span);
-    const double seconds = number / page.rate.per_second();
+    const double seconds = page.seconds(number);
     const double to_percent = 100.0 / kComfortPerPixel / frame.width_px;
     near.add(bin, seconds, to_percent * frame.disparity[place_of(0.99)]);
     median.add(bin, seconds, to_percent * frame.disparity[place_of(0.5)]);
@@ -172,11 +172,11 @@ std::string make_comfort_page(const ComfortPage& page) {
        {"verdict", std::string(name_of(film.verdict))},
        {"input", escaped_markup(page.input)},
        {"amount",
-        fmt::format("{} frames of {}x{} pixels in {} shot{}, {} frames per second; {:.0f} "
+        fmt::format("{} frames of {}x{} pixels in {} shot{}, {}{} frames per second; {:.0f} "
                     "% of the pixels were matched",
                     film.frames, film.width_px, film.height_px, page.report.shots.size(),
-                    page.report.shots.size() == 1 ? "" : "s", to_string(page.rate),
-                    film.matched_percent)},
+                    page.report.shots.size() == 1 ? "" : "s", page.times ? "about " : "",
+                    to_string(page.rate), film.matched_percent)},
        {"film", film_table(film)},
        {"charts", charts(page)},
        {"shots", shot_table(page)},

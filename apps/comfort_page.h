@@ -1,11 +1,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "apps/setting_value.h"
 #include "engine/comfort/comfort_summary.h"
 #include "engine/io/frame_rate.h"
+#include "engine/io/frame_times.h"
 
 namespace vantage::apps {
 
@@ -13,8 +15,13 @@ namespace vantage::apps {
 struct ComfortPage {
   const ComfortReport& report;
   const std::map<int, FrameComfort>& frames;
-  FrameRate rate;     ///< of `frames`
-  std::string input;  ///< its name
+  FrameRate rate;                   ///< of `frames`
+  std::optional<FrameTimes> times;  ///< of all frames if the rate is variable
+  std::string input;                ///< its name
+
+  [[nodiscard]] double seconds(int frame) const {
+    return times ? times->seconds(frame) : frame / rate.per_second();
+  }
 };
 
 /// The JSON of comfort.json.

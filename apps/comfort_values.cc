@@ -27,7 +27,7 @@ SettingValue limit_values(const ComfortLimit& limit, const char* unit) {
   return {{"borderline_above", limit.borderline}, {"unsafe_above", limit.unsafe}, {"unit", unit}};
 }
 
-SettingValue summary_values(const ComfortSummary& summary, double rate) {
+SettingValue summary_values(const ComfortSummary& summary, const ComfortPage& page) {
   SettingValue findings = SettingValue::array();
   for (const ComfortFinding& finding : summary.findings) {
     findings.push_back({{"name", finding.name},
@@ -37,7 +37,7 @@ SettingValue summary_values(const ComfortSummary& summary, double rate) {
   const auto& px = summary.percentiles_px;
   return {{"first_frame", summary.span.first_frame},
           {"end_frame", summary.span.end_frame},
-          {"start_seconds", rounded(summary.span.first_frame / rate)},
+          {"start_seconds", rounded(page.seconds(summary.span.first_frame))},
           {"frames_measured", summary.frames},
           {"verdict", std::string(name_of(summary.verdict))},
           {"percentiles_px",
@@ -79,10 +79,9 @@ SettingValue limits_values() {
 }  // namespace
 
 SettingValue comfort_values(const ComfortPage& page) {
-  const double rate = page.rate.per_second();
   SettingValue shots = SettingValue::array();
   for (const ComfortSummary& shot : page.report.shots) {
-    shots.push_back(summary_values(shot, rate));
+    shots.push_back(summary_values(shot, page));
   }
   SettingValue sources = SettingValue::array();
   for (const std::string_view source : kComfortSources) {
@@ -97,7 +96,7 @@ SettingValue comfort_values(const ComfortPage& page) {
           {"sign", "disparities are x_left - x_right: positive is crossed, in front of the screen"},
           {"limits", limits_values()},
           {"sources", sources},
-          {"film", summary_values(film, rate)},
+          {"film", summary_values(film, page)},
           {"shots", shots}};
 }
 

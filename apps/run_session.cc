@@ -76,6 +76,7 @@ RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSe
   }
   identity.frame_count = session.pairs->is_stream() ? kUnknownFrames : session.pairs->pair_count();
   const PairSource::Sound sound = session.pairs->sound();
+  identity.frame_times = session.pairs->frame_times();
   if (job.sequence.sound && !sound.file.empty()) {
     identity.sound_file = fs::absolute(sound.file);
     identity.sound_first_frame = sound.first_frame;

@@ -8,6 +8,7 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/frame_rate.h"
+#include "engine/io/frame_times.h"
 #include "engine/io/video_picture.h"
 
 namespace vantage {
@@ -62,6 +63,9 @@ class FrameSource {
 
   /// Empty for image files.
   [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const = 0;
+
+  /// Times of all frames of a video of variable rate; else empty.
+  [[nodiscard]] virtual std::optional<FrameTimes> frame_times() const { return std::nullopt; }
 
   /// The video file, which may hold sound; empty for image files.
   [[nodiscard]] virtual std::filesystem::path video_file() const = 0;

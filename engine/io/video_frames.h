@@ -26,6 +26,9 @@ class VideoFrames : public FrameSource {
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override {
     return reader_->frame_rate();
   }
+  [[nodiscard]] std::optional<FrameTimes> frame_times() const override {
+    return reader_->frame_times();
+  }
   [[nodiscard]] std::filesystem::path video_file() const override { return name_; }
   [[nodiscard]] std::string identity() const override;
 

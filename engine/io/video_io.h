@@ -6,6 +6,7 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/frame_rate.h"
+#include "engine/io/frame_times.h"
 #include "engine/io/video_coding.h"
 #include "engine/io/video_picture.h"
 
@@ -29,6 +30,8 @@ class VideoReader {
   [[nodiscard]] int height() const;
   /// Empty if the container does not specify it.
   [[nodiscard]] std::optional<FrameRate> frame_rate() const;
+  /// Empty if the rate is constant, and where not all times are known, as in interlaced video.
+  [[nodiscard]] const std::optional<FrameTimes>& frame_times() const;
   /// Frames in the index of an MP4 or MOV; in other containers the packets of the video are
   /// counted, which reads the whole file. Interlaced videos may have fewer, as may recordings that
   /// start mid-programme, by up to a fiftieth. In a truncated file without index, the incomplete

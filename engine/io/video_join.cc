@@ -128,15 +128,40 @@ JoinPlan plan_join(std::span<const fs::path> paths, AVRational frame_unit) {
   return plan;
 }
 
+/// When the frames of the joined video are shown, from the first one on.
+class ShownTimes {
+ public:
+  ShownTimes(AVRational frame_unit, const std::optional<FrameTimes>& times)
+      : unit_(times ? AVRational{static_cast<int>(times->unit_numerator),
+                                 static_cast<int>(times->unit_denominator)}
+                    : frame_unit),
+        step_(std::max<std::int64_t>(1, av_rescale_q(1, frame_unit, unit_))),
+        times_(times) {}
+
+  [[nodiscard]] bool is_steady() const { return !times_; }
+  [[nodiscard]] AVRational unit() const { return unit_; }
+  /// From frames before the first one, at a constant rate, to the one after the last.
+  [[nodiscard]] std::int64_t of(std::int64_t frame) const {
+    return times_ && frame > 0
+               ? times_->times[static_cast<std::size_t>(frame)] - times_->times.front()
+               : frame * step_;
+  }
+
+ private:
+  AVRational unit_;
+  std::int64_t step_;
+  const std::optional<FrameTimes>& times_;
+};
+
 /// Writes all segments, with `sound`.
 void write_joined(std::span<const fs::path> segments, const JoinPlan& plan, AVRational frame_unit,
-                  const SoundTrack& sound, const fs::path& output) {
+                  const ShownTimes& shown, const SoundTrack& sound, const fs::path& output) {
   const std::unique_ptr<SoundPackets> sound_packets = open_sound_packets(sound);
   bool sound_left = sound_packets != nullptr && sound_packets->next();
 
   VideoMuxer muxer(output);
-  const int video_stream =
-      muxer.add_stream(Segment(segments.front(), frame_unit).parameters(), frame_unit);
+  const int video_stream = muxer.add_stream(Segment(segments.front(), frame_unit).parameters(),
+                                            shown.unit(), shown.is_steady());
   const int sound_stream =
       sound_left ? muxer.add_stream(sound_packets->parameters(), sound_packets->time_unit()) : -1;
   muxer.begin();
@@ -152,12 +177,13 @@ void write_joined(std::span<const fs::path> segments, const JoinPlan& plan, AVRa
   for (std::size_t i = 0; i < segments.size(); ++i) {
     Segment segment(segments[i], frame_unit);
     while (segment.read(*packet)) {
-      packet->pts += first_frame;
-      packet->dts = decoded - plan.decoding_lead;
-      packet->duration = 1;
+      const std::int64_t frame = packet->pts + first_frame;
+      packet->pts = shown.of(frame);
+      packet->dts = shown.of(decoded - plan.decoding_lead);
+      packet->duration = shown.of(frame + 1) - packet->pts;
       ++decoded;
-      write_sound_before(static_cast<double>(packet->dts) * av_q2d(frame_unit));
-      muxer.write(*packet, video_stream, frame_unit);
+      write_sound_before(static_cast<double>(packet->dts) * av_q2d(shown.unit()));
+      muxer.write(*packet, video_stream, shown.unit());
     }
     first_frame += plan.segment_frames[i];
   }
@@ -178,7 +204,7 @@ void require_sound_file(const SoundTrack& sound) {
 }  // namespace
 
 std::string join_videos(std::span<const fs::path> segments, FrameRate rate, const SoundTrack& sound,
-                        const fs::path& output) {
+                        const fs::path& output, const std::optional<FrameTimes>& times) {
   if (segments.empty()) {
     throw Error(fmt::format("cannot write {}: no videos to join", output.string()));
   }
@@ -186,17 +212,22 @@ std::string join_videos(std::span<const fs::path> segments, FrameRate rate, cons
   const AVRational frame_unit = {static_cast<int>(rate.denominator),
                                  static_cast<int>(rate.numerator)};
   const JoinPlan plan = plan_join(segments, frame_unit);
+  if (times && times->frame_count() != plan.frames) {
+    throw Error(fmt::format("cannot write {}: has {} frames, expected the {} whose times are known",
+                            output.string(), plan.frames, times->frame_count()));
+  }
+  const ShownTimes shown(frame_unit, times);
   std::string problem;
   if (!sound.video.empty()) {
     try {
-      write_joined(segments, plan, frame_unit, sound, output);
+      write_joined(segments, plan, frame_unit, shown, sound, output);
       return "";
     } catch (const Error& error) {
       // Joining without sound shows whether the sound caused the failure.
       problem = error.what();
     }
   }
-  write_joined(segments, plan, frame_unit, {}, output);
+  write_joined(segments, plan, frame_unit, shown, {}, output);
   return problem;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "engine/io/frame_rate.h"
+#include "engine/io/frame_times.h"
 
 namespace vantage {
 
@@ -17,10 +19,13 @@ struct SoundTrack {
 
 /// Concatenates the videos `segments` (at least one, all made by VideoWriter with the same size and
 /// encoding) to `output`, of the same extension, without re-encoding, and adds the sound, copied if
-/// MP4 can hold it and else as AAC. Writes atomically; the bytes depend on the inputs only. Sound
-/// that cannot be decoded or written is left out: returns the reason, else "". Throws Error naming
-/// the missing file (also that of the sound), or the segment that is damaged or does not match.
+/// MP4 can hold it and else as AAC. `times`: of as many frames, shown from the first one on;
+/// Matroska rounds them to milliseconds. Empty: a constant rate. Writes atomically; the bytes
+/// depend on the inputs only. Sound that cannot be decoded or written is left out: returns the
+/// reason, else "". Throws Error naming the missing file (also that of the sound), or the segment
+/// that is damaged or does not match.
 std::string join_videos(std::span<const std::filesystem::path> segments, FrameRate rate,
-                        const SoundTrack& sound, const std::filesystem::path& output);
+                        const SoundTrack& sound, const std::filesystem::path& output,
+                        const std::optional<FrameTimes>& times = {});
 
 }  // namespace vantage

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <new>
 
 #include "engine/error.h"
@@ -46,14 +47,15 @@ void VideoMuxer::fail(const std::string& problem) const {
   throw Error(fmt::format("cannot write {}: {}", path_.string(), problem));
 }
 
-int VideoMuxer::add_stream(const AVCodecParameters& parameters, AVRational time_unit) {
+int VideoMuxer::add_stream(const AVCodecParameters& parameters, AVRational time_unit,
+                           bool is_steady) {
   AVStream* stream = libav().avformat_new_stream(output_.get(), nullptr);
   if (stream == nullptr || libav().avcodec_parameters_copy(stream->codecpar, &parameters) < 0) {
     throw std::bad_alloc();
   }
   stream->codecpar->codec_tag = 0;  // another container's tag may be meaningless here
   stream->time_base = time_unit;
-  if (is_matroska_ && output_->nb_streams == 1) {
+  if (is_matroska_ && output_->nb_streams == 1 && is_steady) {
     // Times are rounded to milliseconds there, so the duration of a frame is stored, too.
     stream->avg_frame_rate = {time_unit.den, time_unit.num};
   }
@@ -81,6 +83,12 @@ void VideoMuxer::write(AVPacket& packet, int stream, AVRational time_unit) {
   packet.stream_index = stream;
   packet.pos = -1;
   libav().av_packet_rescale_ts(&packet, time_unit, output_->streams[stream]->time_base);
+  if (is_matroska_ && stream == 0) {
+    // Times less than a millisecond apart must stay different.
+    packet.pts = std::max(packet.pts, last_time_ + 1);
+    packet.dts = packet.pts;  // no coding in this container decodes ahead
+    last_time_ = packet.pts;
+  }
   int result = libav().av_interleaved_write_frame(output_.get(), &packet);
   if (result >= 0) {
     result = output_->pb->error;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -25,9 +26,9 @@ class VideoMuxer {
   VideoMuxer& operator=(const VideoMuxer&) = delete;
   ~VideoMuxer();
 
-  /// Adds a stream before begin(), the video first, whose time unit is that of a frame. Returns its
-  /// index.
-  int add_stream(const AVCodecParameters& parameters, AVRational time_unit);
+  /// Adds a stream before begin(), the video first. is_steady: all its frames have the same length,
+  /// which the unit of the video then is. Returns its index.
+  int add_stream(const AVCodecParameters& parameters, AVRational time_unit, bool is_steady = true);
   void begin();
   /// Writes `packet`, whose times are in `time_unit`, to stream `stream`; the packet is empty
   /// afterwards. Packets of a stream come in decoding order, those of several streams roughly by
@@ -48,6 +49,7 @@ class VideoMuxer {
 
   std::filesystem::path path_;
   bool is_matroska_;
+  std::int64_t last_time_ = -1;  ///< of the video, in Matroska's milliseconds
   AtomicFile file_;
   // Declared after the file, so that it closes it before the file is removed.
   std::unique_ptr<AVFormatContext, Free> output_;

@@ -191,6 +191,9 @@ VideoReader::~VideoReader() = default;
 int VideoReader::width() const { return state_->width; }
 int VideoReader::height() const { return state_->height; }
 std::optional<FrameRate> VideoReader::frame_rate() const { return state_->timing.rate; }
+const std::optional<FrameTimes>& VideoReader::frame_times() const {
+  return state_->timing.frame_times;
+}
 int VideoReader::frame_count() const { return state_->timing.frames; }
 int VideoReader::frames_missing() const { return state_->frames_missing; }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/error.h"
@@ -26,6 +27,7 @@ namespace {
 struct PacketTimes {
   std::vector<std::int64_t> times;  ///< in the stream's unit, of the packets that have one
   std::size_t packets = 0;          ///< number of packets that show a frame
+  std::int64_t last_length = 0;     ///< how long the last frame is shown; 0 if not known
   /// Earliest decoding time of the first missing packet; its presentation is later.
   std::optional<std::int64_t> cut_time;
   /// Decoding time of the last packet of a stream without a defined end.
@@ -55,6 +57,9 @@ PacketTimes read_index(AVStream& stream, std::uint64_t file_bytes) {
     if (!result.cut_time && static_cast<std::uint64_t>(entry->pos + entry->size) > file_bytes) {
       result.cut_time = entry->timestamp;
     }
+  }
+  if (!result.times.empty() && stream.duration > 0) {
+    result.last_length = result.times.front() + stream.duration - result.times.back();
   }
   return result;
 }
@@ -115,6 +120,7 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
   CutVideo cut(*stream.codecpar);
   bool key_seen = false;
   std::int64_t last_decoded = AV_NOPTS_VALUE;
+  std::int64_t last_shown = AV_NOPTS_VALUE;
   std::int64_t frames_end = std::numeric_limits<std::int64_t>::max();
   PacketTimes result;
   while (libav().av_read_frame(input.get(), packet.get()) >= 0) {
@@ -125,7 +131,12 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
         result = {};  // the first frames of a mid-programme recording cannot be decoded
         key_seen = true;
       }
-      result.add(packet->pts != AV_NOPTS_VALUE ? packet->pts : packet->dts);
+      const std::int64_t time = packet->pts != AV_NOPTS_VALUE ? packet->pts : packet->dts;
+      if (result.times.empty() || time >= last_shown) {
+        last_shown = time;
+        result.last_length = packet->duration;
+      }
+      result.add(time);
       last_decoded = packet->dts;
       frames_end = packet->pos + packet->size;
     }
@@ -141,9 +152,8 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
   return result;
 }
 
-/// Median of the steps between times; 0 when there is none.
-double usual_step(std::vector<std::int64_t> times) {
-  std::sort(times.begin(), times.end());
+/// Median of the steps between ascending times; 0 when there is none.
+std::int64_t usual_step(const std::vector<std::int64_t>& times) {
   std::vector<std::int64_t> steps;
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i] > times[i - 1]) {
@@ -153,7 +163,7 @@ double usual_step(std::vector<std::int64_t> times) {
   if (steps.empty()) {
     return 0;
   }
-  return static_cast<double>(upper_median(steps));
+  return upper_median(steps);
 }
 
 std::optional<FrameRate> to_frame_rate(AVRational rate) {
@@ -184,6 +194,28 @@ std::optional<FrameRate> choose_rate(const AVStream& stream, double step_seconds
   return error(*guess) < error(*average) ? guess : average;
 }
 
+/// Empty if the rate is not variable, or not all times are known. `step`: usual length of a frame.
+std::optional<FrameTimes> variable_times(PacketTimes packets, const VideoTiming& timing,
+                                         const AVStream& stream, std::int64_t step) {
+  std::vector<std::int64_t> times = std::move(packets.times);
+  std::ranges::sort(times);
+  const auto frames = static_cast<std::size_t>(timing.frames);
+  if (times.size() > frames || (times.size() < frames && !timing.cut_time) ||
+      std::ranges::adjacent_find(times) != times.end() ||
+      !are_uneven(times, av_q2d(stream.time_base), *timing.rate)) {
+    return std::nullopt;
+  }
+  while (times.size() < frames) {
+    times.push_back(times.back() + step);  // of frames that are cut off
+  }
+  times.push_back(times.back() + (packets.last_length > 0 ? packets.last_length : step));
+  const std::int64_t start = times.front();
+  for (std::int64_t& time : times) {
+    time -= start;
+  }
+  return FrameTimes{std::move(times), stream.time_base.num, stream.time_base.den, *timing.rate};
+}
+
 /// Packets of interlaced video may hold half a frame. Without an index, some packets may not be
 /// frames.
 int uncertain_frames(int frames, bool from_index, bool interlaced) {
@@ -212,8 +244,16 @@ VideoTiming examine_video_timing(AVFormatContext& input, AVStream& stream,
   }
   timing.cut_time = packets.cut_time;
   timing.last_decoded = packets.last_decoded;
-  timing.rate =
-      choose_rate(stream, usual_step(std::move(packets.times)) * av_q2d(stream.time_base));
+  std::ranges::sort(packets.times);
+  const std::int64_t step = usual_step(packets.times);
+  timing.rate = choose_rate(stream, static_cast<double>(step) * av_q2d(stream.time_base));
+  if (timing.rate && !is_interlaced(stream) &&
+      are_uneven(packets.times, av_q2d(stream.time_base), *timing.rate)) {
+    if (from_index && stream.codecpar->video_delay > 0) {
+      packets = read_packets(path, stream.index, is_whole);  // the index has times of decoding
+    }
+    timing.frame_times = variable_times(std::move(packets), timing, stream, step);
+  }
   return timing;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/io/frame_rate.h"
+#include "engine/io/frame_times.h"
 
 struct AVFormatContext;
 struct AVStream;
@@ -36,11 +37,14 @@ struct VideoTiming {
   /// Possible starts after the first frame, in order; empty if the file has no index of all its
   /// frames.
   std::vector<PossibleStart> starts;
+  /// Set for progressive video of variable rate that knows the times of all its frames.
+  std::optional<FrameTimes> frame_times;
 };
 
-/// Reads the index of an MP4 or MOV, and all packets of the video in other containers. `input` and
-/// `stream` are the open file `path`; their state is restored. Throws Error when it has no frames,
-/// or is an MP4 or MOV without index.
+/// Reads the index of an MP4 or MOV, and all packets of the video in other containers, and where
+/// the rate is variable and the index only has times of decoding. `input` and `stream` are the open
+/// file `path`; their state is restored. Throws Error when it has no frames, or is an MP4 or MOV
+/// without index.
 VideoTiming examine_video_timing(AVFormatContext& input, AVStream& stream,
                                  const std::filesystem::path& path);
 

@@ -42,6 +42,11 @@ std::optional<FrameRate> EveryNthPair::frame_rate() const {
   return rate ? std::optional(slowed_down(*rate, step_)) : std::nullopt;
 }
 
+std::optional<FrameTimes> EveryNthPair::frame_times() const {
+  const std::optional<FrameTimes> pairs = source_->frame_times();
+  return pairs ? std::optional(pairs->some(first_, pair_count_, step_)) : std::nullopt;
+}
+
 PairSource::Sound EveryNthPair::sound() const {
   Sound sound = source_->sound();
   sound.first_frame = (sound.first_frame + first_) / step_;

@@ -34,6 +34,7 @@ class EveryNthPair final : public PairSource {
   [[nodiscard]] std::vector<std::string> remarks() const override { return source_->remarks(); }
   [[nodiscard]] int unpaired_frames() const override { return source_->unpaired_frames(); }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override;
+  [[nodiscard]] std::optional<FrameTimes> frame_times() const override;
   [[nodiscard]] Sound sound() const override;
   [[nodiscard]] std::vector<std::filesystem::path> files() const override {
     return source_->files();

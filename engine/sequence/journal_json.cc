@@ -228,6 +228,19 @@ bool may_become(const std::string& key, const Json& now) {
   return key == "no-sound" && now == true;
 }
 
+Json json_of(const FrameTimes& frames) {
+  return {{"times", frames.times},
+          {"unit_seconds", {frames.unit_numerator, frames.unit_denominator}},
+          {"rate", to_string(frames.rate)}};
+}
+
+FrameTimes frame_times_in(const Json& json) {
+  const Json& unit = json.at("unit_seconds");
+  return {json.at("times").get<std::vector<std::int64_t>>(), unit.at(0).get<std::int64_t>(),
+          unit.at(1).get<std::int64_t>(),
+          parse_frame_rate(json.at("rate").get<std::string>()).value_or(FrameRate())};
+}
+
 }  // namespace
 
 std::string line_of(const JournalRecord& record) {
@@ -250,16 +263,19 @@ std::optional<JournalRecord> record_of(const std::string& line) {
 }
 
 std::string text_of(const RunIdentity& identity) {
-  const Json json = {{"format", kJournalFormat},
-                     {"version", build_info().version},
-                     {"frame_count", identity.is_stream() ? Json() : Json(identity.frame_count)},
-                     {"inputs", identity.inputs},
-                     {"sound",
-                      {{"file", stored_name(identity.sound_file.string())},
-                       {"first_frame", identity.sound_first_frame},
-                       {"rate", to_string(identity.sound_rate)}}},
-                     {"sources", parse_json(identity.sources, "sources")},
-                     {"settings", parse_json(identity.settings, "settings")}};
+  Json json = {{"format", kJournalFormat},
+               {"version", build_info().version},
+               {"frame_count", identity.is_stream() ? Json() : Json(identity.frame_count)},
+               {"inputs", identity.inputs},
+               {"sound",
+                {{"file", stored_name(identity.sound_file.string())},
+                 {"first_frame", identity.sound_first_frame},
+                 {"rate", to_string(identity.sound_rate)}}},
+               {"sources", parse_json(identity.sources, "sources")},
+               {"settings", parse_json(identity.settings, "settings")}};
+  if (identity.frame_times) {
+    json["frame_times"] = json_of(*identity.frame_times);
+  }
   return with_checksum(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -287,6 +303,9 @@ RunIdentity identity_of(const std::string& text, const std::filesystem::path& fi
     identity.sound_first_frame = json.at("sound").at("first_frame").get<double>();
     identity.sound_rate =
         parse_frame_rate(json.at("sound").at("rate").get<std::string>()).value_or(FrameRate());
+    if (const auto times = json.find("frame_times"); times != json.end()) {
+      identity.frame_times = frame_times_in(*times);
+    }
     return identity;
   } catch (const nlohmann::json::exception&) {
     throw Error(fmt::format("{}: is damaged, expected the description of a run", file.string()));

@@ -28,6 +28,12 @@ std::vector<std::string> MovingCameraPairs::remarks() const {
   return numbering_remarks({*source_, 0, source_->frame_count()});
 }
 
+std::optional<FrameTimes> MovingCameraPairs::frame_times() const {
+  const std::optional<FrameTimes> frames = source_->frame_times();
+  return frames ? std::optional(frames->some(later_is_left_ ? distance_ : 0, pair_count()))
+                : std::nullopt;
+}
+
 bool MovingCameraImages::fetch(FramePair& pair) {
   if (next_index_ >= pair_count()) {
     return false;

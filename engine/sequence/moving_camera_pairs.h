@@ -20,6 +20,7 @@ class MovingCameraPairs : public PairSource {
   [[nodiscard]] std::vector<std::string> remarks() const final;
   [[nodiscard]] int unpaired_frames() const final { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const final { return source_->frame_rate(); }
+  [[nodiscard]] std::optional<FrameTimes> frame_times() const final;
   [[nodiscard]] Sound sound() const final {
     return {source_->video_file(), later_is_left_ ? distance_ : 0.0};
   }

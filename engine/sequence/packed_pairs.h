@@ -23,6 +23,9 @@ class PackedPairs : public PairSource {
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override {
     return source_->frame_rate();
   }
+  [[nodiscard]] std::optional<FrameTimes> frame_times() const override {
+    return source_->frame_times();
+  }
   [[nodiscard]] Sound sound() const override { return {source_->video_file(), 0.0}; }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override {
     return source_->files();

@@ -152,6 +152,8 @@ class PairSource {
   [[nodiscard]] virtual int unpaired_frames() const = 0;
   /// Frame rate of the left or packed video; empty for image files.
   [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const = 0;
+  /// Times of all pairs if that video has a variable rate; else empty.
+  [[nodiscard]] virtual std::optional<FrameTimes> frame_times() const { return std::nullopt; }
   /// Video file with the sound, and its frame that is pair 0; the file is empty if there is none.
   struct Sound {
     std::filesystem::path file;

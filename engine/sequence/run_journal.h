@@ -13,6 +13,7 @@
 #include "engine/io/checksum.h"
 #include "engine/io/frame_rate.h"
 #include "engine/io/frame_source.h"
+#include "engine/io/frame_times.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_range.h"
 #include "engine/view_geometry/depth_resolution.h"
@@ -33,6 +34,8 @@ struct RunIdentity {
   std::filesystem::path sound_file;  ///< video that the sound is taken from; empty: none
   double sound_first_frame = 0;      ///< its frame that is frame 0 of the run
   FrameRate sound_rate;              ///< of the frames of that video
+  /// Times of all frames of the run; videos of its rate have them. Empty: a constant rate.
+  std::optional<FrameTimes> frame_times;
 
   /// Whether the input was a stream, which cannot be read again.
   [[nodiscard]] bool is_stream() const { return frame_count == kUnknownFrames; }

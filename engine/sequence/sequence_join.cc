@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "engine/error.h"
 #include "engine/io/file_lock.h"
+#include "engine/io/frame_times.h"
 #include "engine/io/temporary_name.h"
 #include "engine/io/video_join.h"
 
@@ -29,10 +31,21 @@ std::vector<FrameRange> segments_of(const DeliveredFrames& delivered, FrameRange
   return chosen;
 }
 
+/// Empty: videos have a constant rate.
+std::optional<FrameTimes> times_of(const SequenceOptions& options, const RunIdentity& identity,
+                                   FrameRange frames) {
+  return identity.frame_times && identity.frame_times->rate == options.frame_rate
+             ? std::optional(identity.frame_times->some(frames.first, frames.count()))
+             : std::nullopt;
+}
+
 SoundTrack sound_of(const SequenceOptions& options, const RunIdentity& identity,
-                    FrameRange frames) {
+                    const std::optional<FrameTimes>& times, FrameRange frames) {
   if (!options.sound || identity.sound_file.empty() || identity.sound_rate != options.frame_rate) {
     return {};
+  }
+  if (times) {
+    return {identity.sound_file, times->seconds(0), times->seconds(frames.count())};
   }
   const double rate = identity.sound_rate.per_second();
   return {identity.sound_file, (identity.sound_first_frame + frames.first) / rate,
@@ -41,7 +54,10 @@ SoundTrack sound_of(const SequenceOptions& options, const RunIdentity& identity,
 
 /// Returns why sound was left out, as join_videos() does.
 std::string join_videos_of(const SequenceOptions& options, const SequenceLayout& layout,
-                           const SoundTrack& sound, const std::vector<FrameRange>& segments) {
+                           const RunIdentity& identity, FrameRange frames,
+                           const std::vector<FrameRange>& segments) {
+  const std::optional<FrameTimes> times = times_of(options, identity, frames);
+  const SoundTrack sound = sound_of(options, identity, times, frames);
   std::string sound_problem;
   for (const OutputStream& stream : layout.streams()) {
     if (!stream.as_video) {
@@ -52,7 +68,8 @@ std::string join_videos_of(const SequenceOptions& options, const SequenceLayout&
     for (const FrameRange segment : segments) {
       paths.push_back(layout.segment(stream, segment));
     }
-    const std::string problem = join_videos(paths, options.frame_rate, sound, layout.video(stream));
+    const std::string problem =
+        join_videos(paths, options.frame_rate, sound, layout.video(stream), times);
     sound_problem = sound_problem.empty() ? problem : sound_problem;
   }
   return sound_problem;
@@ -102,8 +119,7 @@ std::string join_segments(const SequenceOptions& options, const SequenceLayout& 
           "frames {}-{}; `resume` without `frames` writes them",
           segments_end, frames.first, end - 1));
     }
-    sound_problem =
-        join_videos_of(options, layout, sound_of(options, identity, {frames.first, end}), segments);
+    sound_problem = join_videos_of(options, layout, identity, {frames.first, end}, segments);
     JoinRecord joined{frames, skipped};
     for (const std::string& name : layout.video_names()) {
       joined.files.push_back(record_of_file(layout.folder(), name));

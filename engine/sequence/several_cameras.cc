@@ -110,6 +110,11 @@ int SeveralCameras::unpaired_frames() const {
 
 std::optional<FrameRate> SeveralCameras::frame_rate() const { return pairs_->frame_rate(); }
 
+std::optional<FrameTimes> SeveralCameras::frame_times() const {
+  const std::optional<FrameTimes> pairs = pairs_->frame_times();
+  return pairs ? std::optional(pairs->some(0, pair_count_)) : std::nullopt;
+}
+
 std::vector<std::filesystem::path> SeveralCameras::files() const {
   std::vector<std::filesystem::path> files = pairs_->files();
   for (const Camera& camera : more_) {

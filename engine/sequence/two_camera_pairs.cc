@@ -151,6 +151,14 @@ std::optional<FrameRate> TwoCameraPairs::frame_rate() const {
   return left_rate ? left_rate : right_->frame_rate();
 }
 
+std::optional<FrameTimes> TwoCameraPairs::frame_times() const {
+  const bool takes_left = left_->frame_rate().has_value();
+  const std::optional<FrameTimes> frames =
+      takes_left ? left_->frame_times() : right_->frame_times();
+  return frames ? std::optional(frames->some(takes_left ? first_left_ : first_right_, pair_count_))
+                : std::nullopt;
+}
+
 PairSource::Sound TwoCameraPairs::sound() const {
   if (const std::filesystem::path file = left_->video_file(); !file.empty()) {
     return {file, static_cast<double>(first_left_)};

@@ -121,6 +121,7 @@ TEST_F(RunJournalTest, TheIdentityIsKept) {
   identity_.sources = R"({"left":"/films/left"})";
   identity_.sound_first_frame = 3;
   identity_.sound_rate = {30000, 1001};
+  identity_.frame_times = FrameTimes{{0, 33, 200}, 1, 1000, {30000, 1001}};
   open(JournalOpening::kNew);
   const RunIdentity read = RunJournal::read_identity(journal_);
   EXPECT_EQ(read.settings, identity_.settings);
@@ -130,6 +131,7 @@ TEST_F(RunJournalTest, TheIdentityIsKept) {
   EXPECT_EQ(read.sound_file, identity_.sound_file);
   EXPECT_EQ(read.sound_first_frame, 3);
   EXPECT_EQ(read.sound_rate, identity_.sound_rate);
+  EXPECT_EQ(read.frame_times, identity_.frame_times);
 }
 
 TEST_F(RunJournalTest, ARunIsNotBegunTwiceUnasked) {

@@ -111,6 +111,26 @@ TEST(VideoJoin, HoldsTheFramesOfAllSegmentsInOrderAtExactTimes) {
   EXPECT_EQ(sound_codec(folder / "joined.mp4"), "");
 }
 
+TEST(VideoJoin, KeepsTheTimesOfAVariableRate) {
+  const TemporaryFolder folder;
+  FrameTimes times{
+      {700, 1701, 2702, 5705, 6706, 12712, 13713, 14714, 15715, 20720, 25725}, 1, 24000, {8, 1}};
+  const auto segments = put_segments(folder, {4, 6}, times.rate);
+  join_videos(segments, times.rate, {}, folder / "joined.mp4", times);
+  EXPECT_EQ(frame_numbers(folder / "joined.mp4"), numbers_up_to(10));
+  const auto joined = VideoReader(folder / "joined.mp4").frame_times();
+  ASSERT_TRUE(joined);
+  ASSERT_EQ(joined->times.size(), times.times.size());
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_NEAR(joined->seconds(i), times.seconds(i) - times.seconds(0), 1e-9) << i;
+  }
+  times.times.pop_back();
+  EXPECT_THAT(error_of([&] { join_videos(segments, times.rate, {}, folder / "few.mp4", times); }),
+              HasSubstr("has 10 frames, expected the 9"));
+  join_videos(segments, times.rate, {}, folder / "even.mp4");
+  EXPECT_FALSE(VideoReader(folder / "even.mp4").frame_times());
+}
+
 TEST(VideoJoin, BytesDependOnTheInputsOnly) {
   const TemporaryFolder folder;
   const auto segments = put_segments(folder, {4, 6});
