@@ -175,7 +175,7 @@ std::string make_comfort_page(const ComfortPage& page) {
         fmt::format("{} frames of {}x{} pixels in {} shot{}, {}{} frames per second; {:.0f} "
                     "% of the pixels were matched",
                     film.frames, film.width_px, film.height_px, page.report.shots.size(),
-                    page.report.shots.size() == 1 ? "" : "s", page.times ? "about " : "",
+                    page.report.shots.size() == 1 ? "" : "s", page.times != nullptr ? "about " : "",
                     to_string(page.rate), film.matched_percent)},
        {"film", film_table(film)},
        {"charts", charts(page)},

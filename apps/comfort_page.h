@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <string>
 
 #include "apps/setting_value.h"
@@ -15,12 +14,12 @@ namespace vantage::apps {
 struct ComfortPage {
   const ComfortReport& report;
   const std::map<int, FrameComfort>& frames;
-  FrameRate rate;                   ///< of `frames`
-  std::optional<FrameTimes> times;  ///< of all frames if the rate is variable
-  std::string input;                ///< its name
+  FrameRate rate;           ///< of `frames`
+  const FrameTimes* times;  ///< of all frames; null: the rate is constant
+  std::string input;        ///< its name
 
   [[nodiscard]] double seconds(int frame) const {
-    return times ? times->seconds(frame) : frame / rate.per_second();
+    return times != nullptr ? times->seconds(frame) : frame / rate.per_second();
   }
 };
 

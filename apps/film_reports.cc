@@ -113,10 +113,8 @@ std::optional<ComfortReport> write_comfort(const SequenceOptions& options,
   }
   ComfortReport report = summarise_comfort(measured, spans);
   const std::string input = identity.inputs.empty() ? std::string() : identity.inputs.front();
-  const bool has_times = identity.frame_times && identity.frame_times->rate == options.frame_rate;
   const ComfortPage page{report, measured, options.frame_rate,
-                         has_times ? identity.frame_times : std::nullopt,
-                         input.substr(0, input.rfind(": "))};
+                         identity.times_at(options.frame_rate), input.substr(0, input.rfind(": "))};
   reports.write(layout.comfort_report("json"), document_of(comfort_values(page)));
   reports.write(layout.comfort_report("html"), make_comfort_page(page));
   return report;

@@ -257,6 +257,10 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
   for (const std::string& remark : session.pairs->remarks()) {
     line("note: " + remark);
   }
+  if (session.identity.times_at(job.sequence.frame_rate) != nullptr && job.output != "-" &&
+      SequenceLayout(job.output, job.sequence).has_videos()) {
+    line("note: the input has a variable frame rate; videos keep its times");
+  }
   if (!session.poses_note.empty()) {
     line("note: " + session.poses_note);
   }

@@ -85,8 +85,7 @@ void check_stream(const RunJob& job, const Settings& settings) {
 
 int run_to_stream(const RunJob& job, const RunSession& session, Execution& execution,
                   RunReport& report) {
-  const std::optional<FrameTimes>& times = session.identity.frame_times;
-  if (times && times->rate == job.sequence.frame_rate && !job.common.quiet) {
+  if (session.identity.times_at(job.sequence.frame_rate) != nullptr && !job.common.quiet) {
     tell(
         "run: warning: the input has a variable frame rate, which y4m and rawvideo cannot hold: "
         "the output has {} frames per second throughout; a video in a folder (--output DIR) keeps "

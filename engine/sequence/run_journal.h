@@ -37,6 +37,10 @@ struct RunIdentity {
   /// Times of all frames of the run; videos of its rate have them. Empty: a constant rate.
   std::optional<FrameTimes> frame_times;
 
+  /// Times of the frames in videos of this rate; null: the rate is constant.
+  [[nodiscard]] const FrameTimes* times_at(FrameRate rate) const {
+    return frame_times && frame_times->rate == rate ? &*frame_times : nullptr;
+  }
   /// Whether the input was a stream, which cannot be read again.
   [[nodiscard]] bool is_stream() const { return frame_count == kUnknownFrames; }
 };

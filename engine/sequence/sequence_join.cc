@@ -34,9 +34,8 @@ std::vector<FrameRange> segments_of(const DeliveredFrames& delivered, FrameRange
 /// Empty: videos have a constant rate.
 std::optional<FrameTimes> times_of(const SequenceOptions& options, const RunIdentity& identity,
                                    FrameRange frames) {
-  return identity.frame_times && identity.frame_times->rate == options.frame_rate
-             ? std::optional(identity.frame_times->some(frames.first, frames.count()))
-             : std::nullopt;
+  const FrameTimes* times = identity.times_at(options.frame_rate);
+  return times != nullptr ? std::optional(times->some(frames.first, frames.count())) : std::nullopt;
 }
 
 SoundTrack sound_of(const SequenceOptions& options, const RunIdentity& identity,
