@@ -176,9 +176,9 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
   print_remarks("", sequence.remarks);
   print_remarks("skipped ", sequence.skipped);
   warn_of_cut_range(job, sequence);
-  std::string line = fmt::format("run: {} frame{} of {}x{} pixels", sequence.frames,
-                                 sequence.frames == 1 ? "" : "s", session.shape.source.width_px,
-                                 session.shape.source.height_px);
+  std::string line =
+      fmt::format("run: {} frame{}{}", sequence.frames, sequence.frames == 1 ? "" : "s",
+                  session.takes_any_size(job) ? "" : text_of_size(job, session));
   if (sequence.frames > 0) {
     line += fmt::format(", {:.2f} frames/s", sequence.frames / wall_seconds);
   }

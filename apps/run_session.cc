@@ -240,13 +240,17 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   return session;
 }
 
+std::string text_of_size(const RunJob& job, const RunSession& session) {
+  return fmt::format("{} of {}x{} pixels", session.takes_any_size(job) ? ", the first" : "",
+                     session.shape.source.width_px, session.shape.source.height_px);
+}
+
 std::string describe_plan(const RunJob& job, const RunSession& session) {
   const FrameRange own = session.selection.own();
   std::string text;
   const auto line = [&](const std::string& content) { text += "run: " + content + "\n"; };
   line(fmt::format(
-      "{} of {}x{} pixels{}{}{}", counted_frames(job, session.selection.frame_count),
-      session.shape.source.width_px, session.shape.source.height_px,
+      "{}{}{}{}{}", counted_frames(job, session.selection.frame_count), text_of_size(job, session),
       job.input.every.takes_all() ? "" : ", one every " + to_text(job.input.every),
       !job.unrectified.empty()          ? ", rectified in the search"
       : session.shape.is_rectified_here ? ", rectified on the fly"
@@ -270,9 +274,10 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
                    : session.columns.widest        ? range + " or of the list"
                                                    : range,
                    strips_text(session.memory.chain)));
-  line(fmt::format("{}, {} frame{} in flight; memory about {}{}", session.executor,
+  line(fmt::format("{}, {} frame{} in flight; memory about {}{}{}", session.executor,
                    session.memory.in_flight, session.memory.in_flight == 1 ? "" : "s",
                    size_text(session.memory.total_bytes),
+                   session.takes_any_size(job) ? " for pairs of this size" : "",
                    job.memory_bytes ? " of " + size_text(*job.memory_bytes) : std::string()));
   if (!session.tuning.summary.empty()) {
     line(fmt::format("{} ({})", session.tuning.summary,

@@ -29,6 +29,9 @@ struct RunSession : SequenceSession {
 /// result would replace an input.
 RunSession open_run(RunJob& job, const Settings& settings, RunReport& report);
 
+/// " of 640x480 pixels"; of a list whose pairs may differ ", the first of 640x480 pixels".
+std::string text_of_size(const RunJob& job, const RunSession& session);
+
 /// The plan in several lines of text.
 std::string describe_plan(const RunJob& job, const RunSession& session);
 

@@ -65,14 +65,16 @@ void SequenceSession::rectify(FramePair& pair, Execution& pool) const {
   std::swap(pair.right, rectified);
 }
 
+bool SequenceSession::takes_any_size(const SequenceJob& job) const {
+  return !job.input.pairs.empty() && job.sequence.video.empty() &&
+         !job.sequence.temporal.uses_past() && !shape.cameras && !map_camera;
+}
+
 SequenceRun SequenceSession::run(const SequenceJob& job, PairSource& source, const ShotTable* shots,
                                  int in_flight) const {
-  // Pairs of a list may be unrelated.
-  const bool any_size = !job.input.pairs.empty() && job.sequence.video.empty() &&
-                        !job.sequence.temporal.uses_past() && !shape.cameras && !map_camera;
   return {.pairs = source,
           .selection = selection,
-          .frame_size = any_size ? std::nullopt : std::optional(shape.source),
+          .frame_size = takes_any_size(job) ? std::nullopt : std::optional(shape.source),
           .rectifier = rectifier ? &*rectifier : nullptr,
           .pair_cameras = pair_cameras.get(),
           .cameras = shape.cameras ? &*shape.cameras : nullptr,

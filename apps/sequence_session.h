@@ -31,6 +31,8 @@ struct SequenceSession {
 
   /// Rectifies a pair in place if a calibration, the pair's or that of the job, must be applied.
   void rectify(FramePair& pair, Execution& pool) const;
+  /// Whether pairs may differ in size: those of a list, which may be unrelated.
+  [[nodiscard]] bool takes_any_size(const SequenceJob& job) const;
   /// The task of the sequence, with pairs from `source`; `shots` if the options need them.
   [[nodiscard]] SequenceRun run(const SequenceJob& job, PairSource& source, const ShotTable* shots,
                                 int in_flight) const;

@@ -140,6 +140,8 @@ TEST_F(RunPairList, FoldersChooseTheCamerasOfKittiPairByPair) {
   const auto [depths, messages] = depths_of(folder_ / "out", {});
   // All pairs have ranges: none is estimated.
   EXPECT_THAT(messages, testing::Not(HasSubstr("--disparities auto")));
+  EXPECT_THAT(messages, HasSubstr("run: 2 pairs, the first of 64x48 pixels, rectified on the fly"));
+  EXPECT_THAT(messages, HasSubstr(", disparities of the list, "));
   EXPECT_THAT(messages, HasSubstr("kitti.txt: has KITTI's cameras 0 to 3, and 0 and 1 (grey)"));
   const auto depth_of = [&](const char* cameras) {
     const std::string file = folder_ / "depth.npy";
