@@ -1,13 +1,14 @@
 #include "engine/matching/coarse_to_fine.h"
-#include "engine/matching/levels/level_extents.h"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/levels/energy_format.h"
+#include "engine/matching/levels/level_extents.h"
 #include "engine/matching/levels/level_stages.h"
 #include "engine/matching/levels/smooth_tiles.h"
 #include "engine/matching/levels/stage_half_energies.h"
@@ -22,19 +23,6 @@ namespace {
 constexpr std::array<std::string_view, 10> kLevelNames = {
     "level 0", "level 1", "level 2", "level 3", "level 4",
     "level 5", "level 6", "level 7", "level 8", "level 9"};
-
-/// Neither includes the coarsest level.
-int window_level_count(const MethodParameters& parameters, std::size_t levels) {
-  return std::min(parameters.window_levels, static_cast<int>(levels) - 1);
-}
-int pruned_level_count(const MethodParameters& parameters, std::size_t levels) {
-  const int pruned = std::min(parameters.pruned_levels, static_cast<int>(levels) - 1);
-  const bool has_blocks =
-      parameters.candidate_blocks > 0 && pruned > window_level_count(parameters, levels);
-  return has_blocks ? pruned : 0;
-}
-
-int cell_bytes(const MethodParameters& parameters) { return has_likelihoods(parameters) ? 1 : 2; }
 
 /// Reduces the costs of a coarse level to `rows` of the next coarser one. Rows need no strips,
 /// because a cell reads one block only.
@@ -143,7 +131,7 @@ class BandedCosts {
 
 CandidateBlocks::SmoothTiles use_of_smooth_tiles(const CheckMap& check_map) {
   using enum CandidateBlocks::SmoothTiles;
-  return check_map.disparity_px.empty() ? kIgnored : check_map.is_all ? kLeftOut : kMarked;
+  return check_map.disparity_px.empty() ? kIgnored : check_map.is_only ? kLeftOut : kMarked;
 }
 
 /// `map_px` may be `check_px`. tiles: the only ones to write; null: all.
@@ -220,7 +208,7 @@ CheckSource search_fine_levels(const MethodParameters& parameters,
     }
     count(extents[1], share_of(of_level, extents[1]));
   }
-  if (coarse_map.is_all) {
+  if (coarse_map.is_only) {
     return source;
   }
   const scheduler::Span span(kLevelNames[0]);
@@ -230,7 +218,7 @@ CheckSource search_fine_levels(const MethodParameters& parameters,
   }
   if (!check_map.disparity_px.empty()) {
     smooth = smooth_tiles(source.winners, extents[0], geometry.steps_per_px, execution);
-    if (check_map.is_all) {
+    if (check_map.is_only) {
       tiles = tiles ? smooth.inverse().within(*tiles) : smooth.inverse();
     }
   }
@@ -245,117 +233,6 @@ CheckSource search_fine_levels(const MethodParameters& parameters,
 }
 
 }  // namespace
-
-void CoarseLevels::resize(const MethodParameters& parameters,
-                          const std::vector<scheduler::Extent>& extents, int candidates,
-                          LevelBands bands) {
-  const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
-  bands_ = bands;
-  costs_.resize(extents.size() - 1);
-  for (std::size_t i = 0; i < costs_.size(); ++i) {
-    costs_[i].describe(extents[i + 1], lanes, cell_bytes(parameters));
-    if (!bands.has(static_cast<int>(i) + 1)) {
-      costs_[i].hold(extents[i + 1].all_rows());
-    }
-  }
-  winners_.resize(costs_.size());
-  window_levels_ = window_level_count(parameters, extents.size());
-  blocks_.resize(static_cast<std::size_t>(pruned_level_count(parameters, extents.size())));
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    blocks_[i].resize(extents[i], candidates, parameters.candidate_blocks,
-                      steps_per_px(parameters));
-  }
-}
-
-LevelVolume& CoarseLevels::start_other_costs() {
-  const LevelVolume& like = costs(1);
-  other_costs_.resize(like.extent(), like.lanes(), like.cell_bytes());
-  return other_costs_;
-}
-
-LevelVolume& CoarseLevels::start_result(int level) {
-  const LevelVolume& like = costs(level);
-  LevelVolume& volume = result(level);
-  const CandidateBlocks* const of_level = blocks(level);
-  volume.resize(like.extent(), of_level != nullptr ? of_level->lanes() : like.lanes(),
-                like.cell_bytes());
-  return volume;
-}
-
-void CoarseLevels::choose_blocks(int level, const kernels::CandidateGeometry& geometry,
-                                 CandidateBlocks::SmoothTiles smooth, Execution& execution) {
-  // Only the finest level selects disparities, which must have partners.
-  blocks_[static_cast<std::size_t>(level)].choose(
-      std::as_const(*coarser_winners_).view(), level == 0 ? std::optional(geometry) : std::nullopt,
-      execution, smooth);
-}
-
-Image<std::int32_t>& CoarseLevels::start_winners(int level, Image<std::int32_t>* kept) {
-  const scheduler::Extent extent = costs(level).extent();
-  coarser_winners_ = kept != nullptr ? kept : &winners_[static_cast<std::size_t>(level) - 1];
-  coarser_winners_->resize(extent.columns, extent.rows);
-  return *coarser_winners_;
-}
-
-std::size_t CoarseLevels::held_bytes() const {
-  std::size_t bytes =
-      results_[0].held_bytes() + results_[1].held_bytes() + other_costs_.held_bytes();
-  for (const LevelVolume& volume : costs_) {
-    bytes += volume.held_bytes();
-  }
-  for (const CandidateBlocks& blocks : blocks_) {
-    bytes += blocks.held_bytes();
-  }
-  for (const Image<std::int32_t>& winners : winners_) {
-    bytes += vantage::held_bytes(winners);
-  }
-  return bytes + windows_.held_bytes();
-}
-
-std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates, std::size_t memory_bytes) {
-  const auto extents = level_extents(extent, parameters.levels);
-  const int lanes = kernels::CandidateGeometry{.count = candidates}.lanes();
-  const int windows = window_level_count(parameters, extents.size());
-  const int pruned = pruned_level_count(parameters, extents.size());
-  const auto first_result = static_cast<std::size_t>(std::max(1, windows));
-  const LevelBands bands = level_bands(extents, lanes, cell_bytes(parameters), memory_bytes);
-  const auto bytes_of = [&](std::size_t level, int rows, int of_lanes) {
-    return static_cast<std::size_t>(extents[level].columns) * static_cast<std::size_t>(rows) *
-           static_cast<std::size_t>(of_lanes * cell_bytes(parameters));
-  };
-  std::size_t bytes = 0;
-  std::array<std::size_t, 2> results = {0, 0};  // levels share the memory of two
-  for (std::size_t level = 1; level < extents.size(); ++level) {
-    // A band, the rows around it that its iterations read, and those of the next coarser level.
-    const int number = static_cast<int>(level);
-    const int around = 2 * (1 + parameters.iterations) << std::max(0, bands.levels - number);
-    const int rows = bands.has(number)
-                         ? std::min(extents[level].rows, bands.rows_of(number) + around)
-                         : extents[level].rows;
-    const bool is_shared = level == 1 && can_share_costs(parameters) &&
-                           bytes_of(level, extents[level].rows, candidates) <= kMaxSharedCostBytes;
-    bytes += (is_shared ? 2 : 1) * bytes_of(level, rows, lanes);
-    if (level >= first_result) {
-      const int of_result = number < pruned
-                                ? std::min(lanes, parameters.candidate_blocks *
-                                                      static_cast<int>(kernels::kLaneMultiple))
-                                : lanes;
-      results[level % 2] =
-          std::max(results[level % 2], bytes_of(level, extents[level].rows, of_result));
-    }
-  }
-  bytes += results[0] + results[1];
-  if (extents.size() > 1 && (windows > 0 || pruned > 0)) {
-    // Winners of level 1; with two levels of windows also its state.
-    constexpr std::size_t kState =
-        sizeof(kernels::WindowCells) + 2 * sizeof(std::int16_t) + sizeof(float);
-    bytes += static_cast<std::size_t>(extents[1].columns) *
-             static_cast<std::size_t>(extents[1].rows) *
-             (sizeof(std::int32_t) + (windows > 1 ? kState : 0));
-  }
-  return bytes;
-}
 
 bool has_check_map(const MethodParameters& parameters, scheduler::Extent extent) {
   const std::size_t levels = level_extents(extent, parameters.levels).size();
@@ -379,7 +256,7 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
   levels.resize(
       parameters, extents, geometry.count,
       may_have_bands
-          ? level_bands(extents, geometry.lanes(), cell_bytes(parameters),
+          ? level_bands(extents, geometry.lanes(), level_cell_bytes(parameters),
                         execution.options().level_memory_bytes.value_or(kDefaultLevelBytes))
           : LevelBands());
   BandedCosts banded(parameters, geometry, input, outputs, levels, execution, run);
@@ -418,7 +295,7 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
     }
   }
   LevelCells cells;
-  const int finest = coarse_map.is_all ? coarse_map.level : 0;
+  const int finest = coarse_map.is_only ? coarse_map.level : 0;
   for (int level = coarsest; level >= std::max(finest, levels.window_levels()); --level) {
     const scheduler::Span span(kLevelNames[static_cast<std::size_t>(level)]);
     const scheduler::Extent extent = extents[static_cast<std::size_t>(level)];

@@ -1,18 +1,12 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <utility>
 #include <vector>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
-#include "engine/matching/fine_windows.h"
-#include "engine/matching/levels/candidate_blocks.h"
-#include "engine/matching/levels/level_bands.h"
-#include "engine/matching/levels/level_volume.h"
+#include "engine/matching/coarse_levels.h"
 #include "engine/matching/match_chain.h"
 #include "engine/matching/searched_parts.h"
 #include "kernels/candidates.h"
@@ -20,79 +14,11 @@
 
 namespace vantage {
 
-/// Coarse levels stored while one map is computed: costs of each level, results of two, and the
-/// candidate blocks of pruned levels. Working memory, reused without reallocation.
-class CoarseLevels {
- public:
-  /// `extents`: sizes of the levels, the image's own first.
-  /// bands: costs of their levels have no memory yet.
-  void resize(const MethodParameters& parameters, const std::vector<scheduler::Extent>& extents,
-              int candidates, LevelBands bands);
-
-  /// level ≥ 1.
-  [[nodiscard]] LevelVolume& costs(int level) {
-    return costs_[static_cast<std::size_t>(level) - 1];
-  }
-  [[nodiscard]] LevelBands bands() const { return bands_; }
-  /// Resizes the costs of level 1 of the other image's map.
-  LevelVolume& start_other_costs();
-  /// Those become the costs of level 1. Sizes must be the same.
-  void use_other_costs() { std::swap(costs_.front(), other_costs_); }
-  /// Shares its memory with level + 2, whose result is no longer needed.
-  [[nodiscard]] LevelVolume& result(int level) {
-    return results_[static_cast<std::size_t>(level) % 2];
-  }
-  /// Resizes the result of `level`.
-  LevelVolume& start_result(int level);
-
-  /// Candidate blocks of `level`; null: all candidates. choose_blocks() must come first on pruned
-  /// levels.
-  [[nodiscard]] const CandidateBlocks* blocks(int level) const {
-    return level < pruned_levels() ? &blocks_[static_cast<std::size_t>(level)] : nullptr;
-  }
-  /// Chooses the blocks of a pruned level from the winners of the next coarser one. `geometry`: of
-  /// the image.
-  void choose_blocks(int level, const kernels::CandidateGeometry& geometry,
-                     CandidateBlocks::SmoothTiles smooth, Execution& execution);
-  /// Winners of the level that was computed last.
-  [[nodiscard]] const Image<std::int32_t>& coarser_winners() const { return *coarser_winners_; }
-  /// Whether the next finer level chooses its candidates from the winners of `level`.
-  [[nodiscard]] bool needs_winners(int level) const {
-    return level > 0 && (level <= pruned_levels() || level == window_levels_);
-  }
-  /// Number of finest levels that are searched in windows.
-  [[nodiscard]] int window_levels() const { return window_levels_; }
-  [[nodiscard]] FineWindowsWork& windows() { return windows_; }
-  /// Image for the winners of `level` ≥ 1, resized to the level. `kept`: an image that outlives the
-  /// levels; null: working memory.
-  Image<std::int32_t>& start_winners(int level, Image<std::int32_t>* kept);
-
-  [[nodiscard]] std::size_t held_bytes() const;
-
- private:
-  [[nodiscard]] int pruned_levels() const { return static_cast<int>(blocks_.size()); }
-
-  std::vector<LevelVolume> costs_;
-  LevelBands bands_;
-  LevelVolume other_costs_;  ///< empty unless shared
-  std::array<LevelVolume, 2> results_;
-  std::vector<CandidateBlocks> blocks_;             ///< of pruned levels
-  std::vector<Image<std::int32_t>> winners_;        ///< of levels from 1 on, unless kept elsewhere
-  Image<std::int32_t>* coarser_winners_ = nullptr;  ///< of the previous level
-  int window_levels_ = 0;
-  FineWindowsWork windows_;
-};
-
 /// Number of aggregated cells.
 struct LevelCells {
   double all_levels = 0;
   double finest_level = 0;
 };
-
-/// Bytes of CoarseLevels for images of `extent` and `candidates` disparities; 0 for one level.
-/// memory_bytes: see level_bands().
-std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates, std::size_t memory_bytes = kDefaultLevelBytes);
 
 /// The map of a coarse level, in addition to the image's own or instead of it.
 struct CoarseMap {
@@ -100,7 +26,7 @@ struct CoarseMap {
   /// Resized to the level: numbers of candidates; pixels without a partner have one, too.
   Image<std::int32_t>* winners = nullptr;
   /// No finer level is computed; of the outputs, only the size is used.
-  bool is_all = false;
+  bool is_only = false;
 };
 
 /// What the other image's map is checked against, beside the map: the disparities of the map, but
@@ -110,7 +36,7 @@ struct CheckMap {
   ImageView<float> disparity_px = {};  ///< image-sized; empty: not requested
   /// Only the check map is needed. It may then be the map itself, whose smooth tiles are not
   /// computed.
-  bool is_all = false;
+  bool is_only = false;
 };
 
 /// Whether the finest level of images of `extent` can do without its smooth_tiles(): it is searched

@@ -103,7 +103,7 @@ void MapSearch::compute(Side reference, const ChainInput& input, const MapOutput
   search(geometry, searched, outputs, coarse, check,
          start_writers(reference, {width, height}, along_rows, volumes), parts);
   if (geometry.steps_per_px > 1) {
-    const bool has_own_map = !coarse.is_all && !check.is_all;
+    const bool has_own_map = !coarse.is_only && !check.is_only;
     for (const ImageView<float>& map :
          {has_own_map ? outputs.disparity_px : ImageView<float>(), check.disparity_px}) {
       convert_to_px(map, geometry.steps_per_px, execution_);
@@ -143,7 +143,7 @@ void MapSearch::search(const kernels::CandidateGeometry& geometry, const ChainIn
       },
       coarse, check, writers, parts);
   report_.cells += cells.all_levels;
-  if (coarse.is_all) {
+  if (coarse.is_only) {
     if (!plan_before.passes.empty()) {
       report_.plan = std::move(plan_before);
     }
@@ -170,8 +170,7 @@ std::vector<VolumeWriter> MapSearch::start_writers(Side reference, scheduler::Ex
     }
     if (volume.level < 0 || volume.level >= levels) {
       throw UsageError(fmt::format(
-          "volume-level is {}, expected 0 to {}: images of {}x{} have {} "
-          "level{} here",
+          "volume-level is {}, expected 0 to {}: images of {}x{} have {} level{} here",
           volume.level, levels - 1, image.columns, image.rows, levels, levels == 1 ? "" : "s"));
     }
     sinks[{volume.level, volume.kind}].push_back(volume.sink);

@@ -39,8 +39,8 @@ class MapSearch {
         work_(work),
         report_(report) {}
 
-  /// `outputs` have the image's size; with coarse.is_all only that size is used. `volumes`: those
-  /// whose side is `reference` are written; none with coarse.is_all. `parts`: the only ones to
+  /// `outputs` have the image's size; with coarse.is_only only that size is used. `volumes`: those
+  /// whose side is `reference` are written; none with coarse.is_only. `parts`: the only ones to
   /// compute, see match_coarse_to_fine(), with candidates of whole pixels; null: all. Throws Error
   /// when no pixel has a candidate, UsageError for a level of a volume that the image does not
   /// have.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -22,6 +21,8 @@
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
+
+struct CostBounds;
 
 /// Whether the column SSD stage can compute box sums of squared luma differences: the same maps,
 /// faster than computing and then summing costs. Not with several levels, which need the costs.
@@ -95,11 +96,10 @@ struct ChainLevel {
   const VolumeWriter* volume = nullptr;
 };
 
-/// Whether the costs of both images' coarse levels can be reduced together, in the method and in
-/// the search of `input` over so many candidates. Larger images make them one after the other: what
-/// is stored for the second one would be too much memory.
-inline constexpr std::size_t kMaxSharedCostBytes = std::size_t{16} << 20;
-bool can_share_costs(const MethodParameters& parameters);
+/// Whether the costs of both images' coarse levels can be reduced together, in the method and, for
+/// the second, in the search of `input`, over so many candidates. Larger images make them one after
+/// the other: what is stored for the second one would be too much memory.
+bool can_share_costs(const MethodParameters& parameters, scheduler::Extent image, int candidates);
 bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
                   scheduler::Extent image, int candidates);
 
@@ -138,8 +138,8 @@ bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
 //  scanline selection             float, fixed, 32 bits   whole row  NaN if no candidate    map
 //  store energies                 float, fixed, 32 bits   whole row                         stored
 //  symmetric selection            same, stored row        whole row  NaN if unmatched       maps
-//  coarser selection              coarser row                      NaN if no candidate    map
-//  volume                         float, fixed                     NaN if no partner      volume
+//  coarser selection              coarser row                        NaN if no candidate    map
+//  volume                         float, fixed                       NaN if no partner      volume
 // clang-format on
 
 /// The stages that compute one disparity map, or one level of it: cost → aggregation → selection.
@@ -164,6 +164,9 @@ class MatchChain {
  private:
   void add(std::unique_ptr<scheduler::RowStage> stage);
   void add_all(std::vector<std::unique_ptr<scheduler::RowStage>> stages);
+  [[nodiscard]] static CostBounds bounds_of(const MethodParameters& parameters,
+                                            const ChainInput& input);
+  // Costs: chain_costs.cc.
   void add_reduction(const MethodParameters& parameters, const ChainInput& input,
                      const ChainLevel& level);
   void add_costs(const MethodParameters& parameters, const ChainInput& input,
@@ -183,6 +186,7 @@ class MatchChain {
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> byte_energies(
       const MethodParameters& parameters, const ChainInput& input, int first_candidate,
       int count) const;
+  // Windows and the selection of winners: chain_selection.cc.
   void add_column_ssd(const MethodParameters& parameters, const ChainInput& input,
                       const ChainLevel& level);
   void add_box(const MethodParameters& parameters, const ChainInput& input,
@@ -192,6 +196,9 @@ class MatchChain {
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> row_selection(
       const MethodParameters& parameters, const ChainInput& input,
       std::unique_ptr<RowEnergies> energies) const;
+  void add_selection(const MethodParameters& parameters, const ChainInput& input,
+                     const ChainLevel& level);
+  // Aggregation and what is stored.
   void add_aggregation(const MethodParameters& parameters, const ChainInput& input,
                        const ChainLevel& level);
   void add_cost_volume(const MethodParameters& parameters, const ChainInput& input,
@@ -199,9 +206,6 @@ class MatchChain {
   void add_last(const MethodParameters& parameters, const ChainLevel& level,
                 std::unique_ptr<scheduler::RowStage> stage);
   void add_result(const MethodParameters& parameters, const ChainLevel& level);
-  void add_selection(const MethodParameters& parameters, const ChainInput& input,
-                     const ChainLevel& level);
-
   [[nodiscard]] EnergySelector energy_selector(const MethodParameters& parameters) const;
 
   kernels::CandidateGeometry geometry_;

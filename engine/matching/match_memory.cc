@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/coarse_levels.h"
 #include "engine/matching/costs/cost_image.h"
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/reduced_matcher.h"

@@ -157,7 +157,7 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
   }
   MapSearch(search, search.parameters, execution_, search_work, report)
       .compute(side, input, {.disparity_px = size},
-               {.level = kSearchLevel, .winners = &work.winners, .is_all = true}, {}, {},
+               {.level = kSearchLevel, .winners = &work.winners, .is_only = true}, {}, {},
                tiles != nullptr ? &parts.search : nullptr);
 
   const auto searched_geometry =

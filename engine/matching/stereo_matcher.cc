@@ -131,7 +131,7 @@ std::pair<StereoMatcher::MapNeed, StereoMatcher::MapNeed> StereoMatcher::needs(
     return {.whole = is_wanted || (is_checked && !has_level),
             .coarse = has_level && is_other_wanted,
             .check = has_check_maps && is_other_wanted,
-            .check_is_all = has_check_maps && !is_wanted};
+            .check_is_only = has_check_maps && !is_wanted};
   };
   return {need(request.left, request.right), need(request.right, request.left)};
 }
@@ -144,7 +144,7 @@ void StereoMatcher::choose_tiles(MapTask& left, MapTask& right, bool wants_confi
   for (MapTask* const task : {&left, &right}) {
     prepared.halves[index_of(task->side)].prepare(*task->image, 1, execution_);
     for (const bool is_needed :
-         {task->need.whole, task->need.coarse, task->need.check, task->need.check_is_all}) {
+         {task->need.whole, task->need.coarse, task->need.check, task->need.check_is_only}) {
       needed = 2 * needed + (is_needed ? 1 : 0);
     }
   }
@@ -171,7 +171,7 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
   resize(map.disparity_y_px, task.need.whole && in_force_.disparities_y);
   DisparityMap& check_px =
       kept != nullptr ? kept->check_px : prepared.check_px[index_of(task.side)];
-  resize(check_px, task.need.check && !task.need.check_is_all);
+  resize(check_px, task.need.check && !task.need.check_is_only);
   if (!task.need.any()) {
     return;
   }
@@ -182,12 +182,12 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
     coarse = {.level = check_level,
               .winners = kept != nullptr ? &kept->coarse_winners
                                          : &prepared.coarse_winners[index_of(task.side)],
-              .is_all = !task.need.whole};
+              .is_only = !task.need.whole};
   }
   CheckMap check;
   if (task.need.check) {
-    check = {.disparity_px = (task.need.check_is_all ? map.disparity_px : check_px).view(),
-             .is_all = task.need.check_is_all};
+    check = {.disparity_px = (task.need.check_is_only ? map.disparity_px : check_px).view(),
+             .is_only = task.need.check_is_only};
     task.check_px = check.disparity_px;
   }
   // Without a map of its own only the size is used.
@@ -208,7 +208,7 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
                tiles != nullptr ? &parts : nullptr);
   if (kept != nullptr) {
     report.searched_share = std::max(report.searched_share.value_or(0), kept->searched.share());
-    if (task.need.whole && !task.need.check_is_all) {
+    if (task.need.whole && !task.need.check_is_only) {
       copy_winners(kept->winners, execution_, *task.map);
     }
   }

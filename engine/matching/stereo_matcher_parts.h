@@ -37,10 +37,10 @@ struct StereoMatcher::Prepared {
 
 /// What is computed of an image's map: the map, and what is used to check the other one.
 struct StereoMatcher::MapNeed {
-  bool whole = false;   ///< the map, unless check_is_all
+  bool whole = false;   ///< the map, unless check_is_only
   bool coarse = false;  ///< a coarse level
   bool check = false;   ///< a check map
-  bool check_is_all = false;
+  bool check_is_only = false;
   [[nodiscard]] bool any() const { return whole || coarse; }
 };
 

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/coarse_levels.h"
 #include "engine/matching/match_memory.h"
 #include "engine/matching/reduced_matcher.h"
 #include "engine/matching/stereo_matcher.h"

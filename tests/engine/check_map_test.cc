@@ -100,7 +100,7 @@ Image<std::int32_t> coarse_winners(const test::PhotographPair& pair, const Match
   match_coarse_to_fine(parameters, geometry, input, {.disparity_px = size_alone.view()}, levels,
                        execution,
                        [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); },
-                       {.level = 1, .winners = &winners, .is_all = true});
+                       {.level = 1, .winners = &winners, .is_only = true});
   return winners;
 }
 

@@ -46,7 +46,7 @@ struct BothMaps {
 };
 
 BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, Side reference,
-                 int level, bool is_all) {
+                 int level, bool is_only) {
   const MethodParameters parameters = options.resolved();
   Execution execution({.threads = 2});
   const bool is_left = reference == Side::kLeft;
@@ -71,7 +71,7 @@ BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, 
   match_coarse_to_fine(parameters, geometry, input, {.disparity_px = maps.whole.view()}, levels,
                        execution,
                        [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); },
-                       {.level = level, .winners = &winners, .is_all = is_all});
+                       {.level = level, .winners = &winners, .is_only = is_only});
   for (int y = 0; level > 0 && y < own.height(); ++y) {
     for (int x = 0; x < own.width(); ++x) {
       maps.coarse.at(x, y) =

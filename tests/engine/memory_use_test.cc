@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/coarse_levels.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/frame_memory.h"
 #include "tests/engine/oracle_comparison.h"
