@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/option_groups.h"
@@ -20,7 +21,6 @@
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -145,8 +145,7 @@ int command_asp(const Arguments& arguments) {
   AspJob job;
   Settings settings(
       "asp",
-      "Matches a tile for Ames Stereo Pipeline: a disparity map with gaps where there "
-      "is no data.");
+      "Matches a tile for Ames Stereo Pipeline: a disparity map with gaps where there is no data.");
   add_asp_settings(settings, job);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
@@ -158,11 +157,9 @@ int command_asp(const Arguments& arguments) {
     return kExitDone;
   }
   check(job, settings);
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
 
   DisparityMap left;
   DisparityMap right;

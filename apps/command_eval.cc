@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/option_groups.h"
@@ -15,7 +16,6 @@
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -178,11 +178,9 @@ int command_eval(const Arguments& arguments) {
     return kExitDone;
   }
   check(job, settings);
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
   const std::vector<Row> rows =
       job.views ? judge_view(job, execution, report) : judge_disparity(job, report);
   print_table(rows);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/figure_files.h"
 #include "apps/figure_inputs.h"
@@ -160,8 +161,8 @@ int command_experiment(const Arguments& arguments) {
   Settings settings(
       "experiment",
       "Computes figures and tables of D. Scharstein, View Synthesis Using Stereo Vision (1999): "
-      "numbers (CSV), charts and pictures "
-      "(SVG), and one page (HTML) with what the book says beside what came out.");
+      "numbers (CSV), charts and pictures (SVG), and one page (HTML) with what the book says "
+      "beside what came out.");
   add_experiment_settings(settings, job);
   add_common_settings(settings, job.common);
   settings.set_short_help(
@@ -198,11 +199,9 @@ int command_experiment(const Arguments& arguments) {
   FileChecks files(settings);
   files.add_made_folder(job.output, "--output");
   check_common_files(job.common, files);
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
   const std::filesystem::path folder = job.output;
   make_folder(folder);
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/generated_files.h"
 #include "apps/option_groups.h"
@@ -8,7 +9,6 @@
 #include "apps/settings.h"
 #include "apps/tell.h"
 #include "engine/generation/book_pairs.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -97,11 +97,8 @@ int command_generate_book(const Arguments& arguments) {
       {"left", "right", "left-disparity", "right-disparity", "left-occluded", "right-occluded"},
       checks);
   check_common_files(job.common, checks);
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
 
   const BookPair pair = report.timed_compute("generate", [&] { return make_book_pair(job.pair); });
   report.timed_file_access("write", [&] {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/generated_files.h"
 #include "apps/interrupt.h"
@@ -16,7 +17,6 @@
 #include "apps/wanted_views.h"
 #include "engine/error.h"
 #include "engine/generation/layered_scene.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -217,11 +217,9 @@ int command_generate_scene(const Arguments& arguments) {
   check(job, settings);
   job.cameras = cameras_of(job);
   check_files(job, settings);
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
   const LayeredScene scene(job.scene, execution);
   const GeneratedFiles files(job.output, job.frames.has_value());
 

@@ -8,6 +8,7 @@
 
 #include "apps/applied_tuning.h"
 #include "apps/automatic_disparities.h"
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/kitti_cameras_choice.h"
 #include "apps/match_job.h"
@@ -27,7 +28,6 @@
 #include "engine/matching/unrectified/unrectified_matcher.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/stereo_calibration.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -145,6 +145,25 @@ void print_exposure(const MatchReport& match) {
   tell("match: from {} matches: {}\n", exposure.matches, text);
 }
 
+/// Prints what was matched and where it was written.
+void print_results(const MatchJob& job, scheduler::Extent size, const MatchReport& match,
+                   const DepthFiles& depths, const SpaceOutputs& space) {
+  tell("match: {} ({}), {}x{} pixels, disparities {}:{}, {} -> {}\n", job.match.chosen(),
+       summary_of(job.match.resolved()), size.columns, size.rows, job.match.disparities.min,
+       job.match.disparities.max, job.left, fmt::join(job.written_maps(), ", "));
+  if (!job.preview.empty()) {
+    tell("match: {}: blue is {} px (far), red {} px (near), black unknown\n", job.preview,
+         job.match.disparities.min, job.match.disparities.max);
+  }
+  print_exposure(match);
+  for (const std::string& summary : depths.summaries) {
+    tell("match: {}\n", summary);
+  }
+  if (space.volume) {
+    tell("match: {}\n", volume_summary(job.volume, *space.volume));
+  }
+}
+
 }  // namespace
 
 int command_match(const Arguments& arguments) {
@@ -161,11 +180,9 @@ int command_match(const Arguments& arguments) {
   choose_kitti_cameras(
       settings, job.common, job.unrectified.empty() ? job.depth.calibration : job.unrectified,
       std::vector<std::filesystem::path>(inputs.begin(), inputs.end()), job.depth.kitti_cameras);
-  RunReport report(settings.command(), reported_settings(settings, job.match));
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common, reported_settings(settings, job.match));
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
 
   std::vector<Photograph> images;
   for (const std::string& input : inputs) {
@@ -265,20 +282,7 @@ int command_match(const Arguments& arguments) {
 
   report.write(job.common.report);
   if (!job.common.quiet) {
-    tell("match: {} ({}), {}x{} pixels, disparities {}:{}, {} -> {}\n", job.match.chosen(),
-         summary_of(job.match.resolved()), size.columns, size.rows, job.match.disparities.min,
-         job.match.disparities.max, job.left, fmt::join(job.written_maps(), ", "));
-    if (!job.preview.empty()) {
-      tell("match: {}: blue is {} px (far), red {} px (near), black unknown\n", job.preview,
-           job.match.disparities.min, job.match.disparities.max);
-    }
-    print_exposure(match);
-    for (const std::string& summary : depths.summaries) {
-      tell("match: {}\n", summary);
-    }
-    if (space.volume) {
-      tell("match: {}\n", volume_summary(job.volume, *space.volume));
-    }
+    print_results(job, size, match, depths, space);
     report.print_summary();
   }
   return kExitDone;

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "apps/calibration_settings.h"
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/interrupt.h"
@@ -27,7 +28,6 @@
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "engine/sequence/pair_source.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -82,6 +82,14 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.path("valid-mask", job.valid_mask, "MASK.png",
                 "Write a mask of the pixels that both rectified images cover");
   add_kept_outline_setting(settings, job.rectification);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
+  add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"left", "right", "calibration", "output", "matrices", "valid-mask", "kept-outline",
+       "threads", "quiet"},
+      {"vantage rectify left.jpg right.jpg -o rectified",
+       "vantage rectify left/ right/ -o rectified --matrices rig.yml",
+       "vantage rectify left.jpg right.jpg --calibration rig.yml -o rectified"});
 }
 
 void check(const RectifyJob& job, const Settings& settings) {
@@ -167,6 +175,27 @@ Mask valid_mask(const Rectifier& rectifier) {
   return mask;
 }
 
+/// Writes all pairs, rectified, until Ctrl-C.
+void rectify_pairs(PairSource& pairs, const Rectifier& rectifier, RectifiedFiles& results,
+                   bool is_quiet, Execution& execution, RunReport& report) {
+  const std::atomic<bool>& interrupted = interrupt_flag();
+  const int pair_count = pairs.pair_count();
+  Progress progress("rectify", "pairs",
+                    is_quiet || pair_count == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
+  FramePair pair;
+  for (int index = 0; index < pair_count && !interrupted.load(); ++index) {
+    report.timed_file_access("read", [&] { read_equal_pair(pairs, index, pair); });
+    about(pairs.describe(index), [&] {
+      report.timed_compute("remap", [&] { rectify_pair(rectifier, pair, execution); });
+    });
+    report.timed_file_access("write", [&] {
+      results.write(Side::kLeft, pair);
+      results.write(Side::kRight, pair);
+    });
+    progress.update(index + 1, pair_count, 0);
+  }
+}
+
 }  // namespace
 
 int command_rectify(const Arguments& arguments) {
@@ -175,24 +204,14 @@ int command_rectify(const Arguments& arguments) {
                     "Rectifies photographs of two cameras so that their rows correspond, and "
                     "reports the remaining error.");
   add_rectify_settings(settings, job);
-  add_common_settings(settings, job.common, Work::kWithoutMatching);
-  add_input_limit_settings(settings, job.common.execution);
-  settings.set_short_help(
-      {"left", "right", "calibration", "output", "matrices", "valid-mask", "kept-outline",
-       "threads", "quiet"},
-      {"vantage rectify left.jpg right.jpg -o rectified",
-       "vantage rectify left/ right/ -o rectified --matrices rig.yml",
-       "vantage rectify left.jpg right.jpg --calibration rig.yml -o rectified"});
   if (!settings.read(arguments)) {
     return kExitDone;
   }
   check(job, settings);
   FileChecks files = check_files(job, settings);
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
 
   const std::unique_ptr<PairSource> pairs = open_pair_source(job.input);
   check_pairs(*pairs, files);
@@ -263,20 +282,7 @@ int command_rectify(const Arguments& arguments) {
   });
   const std::atomic<bool>& interrupted = interrupt_flag();
   if (results) {
-    Progress progress(
-        "rectify", "pairs",
-        job.common.quiet || pair_count == 1 ? ProgressStyle::kNone : ProgressStyle::kAuto);
-    for (int index = 0; index < pair_count && !interrupted.load(); ++index) {
-      report.timed_file_access("read", [&] { read_equal_pair(*pairs, index, pair); });
-      about(pairs->describe(index), [&] {
-        report.timed_compute("remap", [&] { rectify_pair(rectifier, pair, execution); });
-      });
-      report.timed_file_access("write", [&] {
-        results->write(Side::kLeft, pair);
-        results->write(Side::kRight, pair);
-      });
-      progress.update(index + 1, pair_count, 0);
-    }
+    rectify_pairs(*pairs, rectifier, *results, job.common.quiet, execution, report);
   }
   report.set_results(results_of(rectification, rectifier.pair(), pair_count));
   report.write(job.common.report);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "apps/calibration_settings.h"
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/depth_outputs.h"
 #include "apps/input_limits.h"
@@ -19,7 +20,6 @@
 #include "engine/image/eight_bit.h"
 #include "engine/io/disparity_io.h"
 #include "engine/io/photograph_io.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -157,11 +157,9 @@ int command_reproject(const Arguments& arguments) {
   check(job, settings);
   const std::filesystem::path image[] = {job.image};
   choose_kitti_cameras(settings, job.common, job.calibration, image, job.kitti_cameras);
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
 
   const MapFiles read = report.timed_file_access("read", [&] { return read_files(job); });
   const int width = read.disparity_px.width();

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/option_groups.h"
@@ -20,7 +21,6 @@
 #include "engine/io/npy.h"
 #include "engine/io/photograph_io.h"
 #include "engine/plot/drawing.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -196,11 +196,9 @@ int command_response(const Arguments& arguments) {
     return kExitDone;
   }
   check(job, settings);
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
 
   const auto read = [&](const std::string& path) {
     return report.timed_file_access("read", [&] { return read_photograph(path); });

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/interrupt.h"
@@ -18,7 +19,6 @@
 #include "apps/tell.h"
 #include "engine/error.h"
 #include "engine/scene_graph/scene_builder.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -49,6 +49,24 @@ void add_file_settings(Settings& settings, SceneBuildJob& job) {
   copy.flag = true;
   copy.set = [&job](const SettingValue& value) { job.copy_images = to_truth(value); };
   copy.get = [&job] { return job.copy_images; };
+}
+
+void add_scene_build_settings(Settings& settings, SceneBuildJob& job) {
+  add_file_settings(settings, job);
+  add_match_settings(settings, job.match);
+  settings.start_group("Check");
+  add_rectification_check_setting(
+      settings, job.check_rectification,
+      "Accept neighbours without checking that rows correspond and that enough pixels match");
+  add_common_settings(settings, job.common);
+  add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"images", "grid", "spacing", "positions", "poses", "output", "disparities", "preset",
+       "threads", "quiet"},
+      {"vantage scene build --images photographs/ --spacing 0.2,1 -o scene",
+       "vantage scene build --images photographs/ --grid 5x3 --spacing 10,12.5 -o scene",
+       "vantage scene build --positions positions.csv --preset quality -o scene",
+       "vantage scene build --poses sparse/ --images photographs/ -o scene"});
 }
 
 /// The settings that an edge's maps depend on, as JSON.
@@ -105,40 +123,23 @@ int command_scene_build(const Arguments& arguments) {
   SceneBuildJob job;
   Settings settings(
       "scene build",
-      "Matches neighbouring images of a row or grid of cameras, or of hand-held cameras "
-      "with poses ('vantage scene poses'). --disparities is for the nearest neighbours; with "
-      "--poses for "
+      "Matches neighbouring images of a row or grid of cameras, or of hand-held cameras with poses "
+      "('vantage scene poses'). --disparities is for the nearest neighbours; with --poses for "
       "those at the median distance.");
-  add_file_settings(settings, job);
-  add_match_settings(settings, job.match);
-  settings.start_group("Check");
-  add_rectification_check_setting(
-      settings, job.check_rectification,
-      "Accept neighbours without checking that rows correspond and that enough pixels match");
-  add_common_settings(settings, job.common);
-  add_input_limit_settings(settings, job.common.execution);
-  settings.set_short_help(
-      {"images", "grid", "spacing", "positions", "poses", "output", "disparities", "preset",
-       "threads", "quiet"},
-      {"vantage scene build --images photographs/ --spacing 0.2,1 -o scene",
-       "vantage scene build --images photographs/ --grid 5x3 --spacing 10,12.5 -o scene",
-       "vantage scene build --positions positions.csv --preset quality -o scene",
-       "vantage scene build --poses sparse/ --images photographs/ -o scene"});
+  add_scene_build_settings(settings, job);
   if (!settings.read(arguments)) {
     return kExitDone;
   }
   check(job);
-  RunReport report(settings.command(), reported_settings(settings, job.match));
-  report.start_trace(job.common.trace);
   const SceneBuildOptions options{.match = job.match,
                                   .settings = match_settings_of(job.match),
                                   .copy_images = job.copy_images,
                                   .check_rectification = job.check_rectification,
                                   .neighbours = job.neighbours};
   options.validate();
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common, reported_settings(settings, job.match));
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
 
   std::vector<std::string> remarks;
   SceneBuilder builder = report.timed_file_access("read", [&] {

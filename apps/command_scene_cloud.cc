@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/interrupt.h"
@@ -16,7 +17,6 @@
 #include "engine/reprojection/ply_file.h"
 #include "engine/scene_graph/scene_cloud.h"
 #include "engine/scene_graph/stored_scene.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -79,11 +79,9 @@ int command_scene_cloud(const Arguments& arguments) {
   const StoredScene scene = read_scene(job.scene);
   check(job, settings, scene);
 
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
   SceneCloudMaker maker(
       scene, [&](int vertex) { return load_vertex(job.scene, scene, vertex); }, job.cloud,
       execution);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/interrupt.h"
@@ -22,7 +23,6 @@
 #include "engine/io/photograph_io.h"
 #include "engine/pose_estimation/camera_estimation.h"
 #include "engine/sequence/sequence_layout.h"
-#include "engine/simd.h"
 #include "engine/view_geometry/colmap_writer.h"
 #include "engine/view_geometry/intrinsics_file.h"
 
@@ -305,11 +305,9 @@ int command_scene_poses(const Arguments& arguments) {
     job.estimation.lens = camera.camera;
     size_of_lens = camera.size;
   }
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
 
   const Photograph first =
       report.timed_file_access("read", [&] { return read_photograph(files[0]); });

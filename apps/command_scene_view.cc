@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/option_groups.h"
@@ -21,7 +22,6 @@
 #include "engine/scene_graph/posed_viewer.h"
 #include "engine/scene_graph/scene_viewer.h"
 #include "engine/scene_graph/stored_scene.h"
-#include "engine/simd.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage::apps {
@@ -247,11 +247,9 @@ int command_scene_view(const Arguments& arguments) {
   ViewOutputs outputs(job.output, settings, static_cast<int>(positions.size() + cameras.size()));
   check(job, settings, scene, outputs);
 
-  RunReport report(settings.command(), settings.values());
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
   OpenScene open{job, outputs, execution, report, settings.command()};
   const auto load = [&](int vertex) { return load_vertex(job.scene, scene, vertex); };
   if (scene.is_posed()) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/empty_views.h"
 #include "apps/input_limits.h"
@@ -19,7 +20,6 @@
 #include "apps/view_pipeline.h"
 #include "apps/wanted_views.h"
 #include "engine/image/memory_use.h"
-#include "engine/simd.h"
 #include "engine/synthesis/view_renderer.h"
 #include "engine/view_geometry/view_pose.h"
 
@@ -116,11 +116,9 @@ int command_synth(const Arguments& arguments) {
   const int views = static_cast<int>(poses.size());
   ViewOutputs outputs(job.output, settings, views);
   check(job, settings, outputs);
-  RunReport report(settings.command(), reported_settings(settings, job.pair));
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common, reported_settings(settings, job.pair));
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
   const PairWithMaps input = read_pair(job.pair, settings, job.common, execution, report);
   complete_poses(job.views, input.cameras ? &*input.cameras : nullptr, input.left.width(),
                  input.left.height(), poses);

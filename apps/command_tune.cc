@@ -255,7 +255,7 @@ int command_tune(const Arguments& arguments) {
   }
   const TuningEntry entry = entry_of(tuned, now_as_text());
   if (!entry.match && !entry.run) {
-    throw Error(fmt::format("budget is {} s, expected enough to measure the default plan",
+    throw Error(fmt::format("--budget is {} s, expected enough to measure the default plan",
                             job.budget_seconds));
   }
   std::fflush(stdout);

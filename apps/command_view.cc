@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "apps/command_work.h"
 #include "apps/commands.h"
 #include "apps/input_limits.h"
 #include "apps/option_groups.h"
@@ -13,7 +14,6 @@
 #include "apps/view_page.h"
 #include "engine/error.h"
 #include "engine/io/atomic_file.h"
-#include "engine/simd.h"
 
 namespace vantage::apps {
 namespace {
@@ -97,11 +97,9 @@ int command_view(const Arguments& arguments) {
   files.add_output(job.output, "--output", OutputKind::kPage);
   check_common_files(job.common, files);
 
-  RunReport report(settings.command(), reported_settings(settings, job.pair));
-  report.start_trace(job.common.trace);
-  force_instruction_set(job.common.isa);
-  Execution execution(job.common.execution);
-  report.set_execution(execution);
+  CommandWork work(settings, job.common, reported_settings(settings, job.pair));
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
   const PairWithMaps pair = read_pair(job.pair, settings, job.common, execution, report);
   const std::string names = file_name(job.pair.left) + " and " + file_name(job.pair.right);
   const std::string page = report.timed_compute(

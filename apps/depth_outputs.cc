@@ -61,7 +61,7 @@ void check_depth_outputs(const DepthOutputs& outputs, const Settings& settings, 
   const double limit_m = largest_depth_m(outputs.depth);
   if (outputs.options.max_depth && *outputs.options.max_depth > limit_m) {
     throw UsageError(
-        fmt::format("max-depth is {}, expected at most {} with a 16-bit PNG of millimetres",
+        fmt::format("--max-depth is {}, expected at most {} with a 16-bit PNG of millimetres",
                     *outputs.options.max_depth, limit_m));
   }
   files.add_output(outputs.depth, "--depth", OutputKind::kDepth);

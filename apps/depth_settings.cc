@@ -64,9 +64,8 @@ void add_depth_settings(Settings& settings, DepthSettings& depth) {
       "depth-resolution", depth.resolution_file, "FILE",
       fmt::format(
           "Write the depth resolution, the distance from each pixel's depth to the next that can "
-          "be "
-          "distinguished from it, in metres, or in the calibration's unit where that is not known: "
-          "{}",
+          "be distinguished from it, in metres, or in the calibration's unit where that is not "
+          "known: {}",
           listed_map_formats(MapContent::kConfidence)));
   add_disparity_resolution_setting(settings, depth.step_px);
 }

@@ -60,7 +60,8 @@ SettingValue depth_values(const SequenceOptions& options, const ShotTable& table
       {"shots", shots}};
 }
 
-/// The files that are written, and those of killed processes removed.
+/// Writes the reports of a run and records them. Unfinished ones of killed processes are removed
+/// first.
 class ReportFiles {
  public:
   explicit ReportFiles(const SequenceLayout& layout) : layout_(layout) {
@@ -74,7 +75,7 @@ class ReportFiles {
     written_.push_back(record_of_file(layout_.folder(), path.filename().string()));
   }
 
-  /// Unless the journal knows them.
+  /// Adds the written files to the journal, unless it has them with this content.
   void record(FrameRange frames, RunJournal& journal) const {
     const JournalContent known = read_journal(layout_);
     const bool is_known = std::ranges::all_of(written_, [&](const FileRecord& file) {

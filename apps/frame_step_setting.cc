@@ -76,8 +76,8 @@ void add_frames_setting(Settings& settings, std::optional<FrameRange>& frames,
                         std::optional<int>& step) {
   Setting& setting =
       settings.add("frames", "A-B[:N]",
-                   "Process frames A to B of the input only, counted from 0; with :N "
-                   "only A, A + N, A + 2 N …");
+                   "Process frames A to B of the input only, counted from 0; with :N only A, A + "
+                   "N, A + 2 N …");
   setting.set = [&frames, &step](const SettingValue& value) {
     frames.reset();
     step.reset();

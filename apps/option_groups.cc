@@ -71,9 +71,9 @@ void add_holes_setting(Settings& settings, HoleFilling& holes) {
        {"inpaint", HoleFilling::kInpaint},
        {"texture", HoleFilling::kTexture},
        {"none", HoleFilling::kNone}},
-      "Filling of areas that no image shows: background mirrored along the row "
-      "(mirror), its border pixel repeated (spread), continued from all "
-      "sides (inpaint) or copied in patches (texture), or black (none)");
+      "Filling of areas that no image shows: background mirrored along the row (mirror), its "
+      "border pixel repeated (spread), continued from all sides (inpaint) or copied in patches "
+      "(texture), or black (none)");
 }
 
 void add_combining_settings(Settings& settings, SynthesisOptions& options) {

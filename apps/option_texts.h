@@ -108,13 +108,11 @@ inline constexpr std::array kOptionTexts = {
     OptionText{
         "sigma-prior", "S",
         "With bayes and a prior other than impulse: standard deviation of the disparity difference "
-        "of neighbours in "
-        "pixels, above 0"},
+        "of neighbours in pixels, above 0"},
     OptionText{
         "epsilon-prior", "E",
         "With bayes and a prior other than quadratic: probability that a neighbour is on another "
-        "surface, above 0 and below "
-        "1; larger: disparity jumps cost less"},
+        "surface, above 0 and below 1; larger: disparity jumps cost less"},
     OptionText{"prior-growth", "G",
                "With bayes and several levels: factor by which --sigma-prior grows with each "
                "coarser level, 1 to 4"},

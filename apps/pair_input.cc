@@ -68,8 +68,7 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
 void check_pair(const PairInput& pair, const Settings& settings) {
   if (pair.left_disparity.empty() != pair.right_disparity.empty()) {
     throw UsageError(
-        "one of --left-disparity and --right-disparity is missing, expected both or "
-        "none");
+        "one of --left-disparity and --right-disparity is missing, expected both or none");
   }
   require_above_0("disparity-scale", pair.disparity_scale);
   if (pair.has_maps()) {

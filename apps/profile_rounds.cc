@@ -100,7 +100,7 @@ class RunFiles {
   }
 
  private:
-  ThrowAwayFolder folder_;
+  ScratchFolder folder_;
 };
 
 /// One run; false when `stop` was raised.

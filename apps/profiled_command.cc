@@ -137,8 +137,8 @@ void ProfiledCommand::redirect(std::string& path) {
   if (place_.empty()) {
     place_ = place;
   }
-  const auto& [folder, throw_away] = *folders_.try_emplace(place.parent_path(), place).first;
-  path = (throw_away.path() / place.filename()).string();
+  const auto& [folder, scratch] = *folders_.try_emplace(place.parent_path(), place).first;
+  path = (scratch.path() / place.filename()).string();
 }
 
 std::string ProfiledCommand::job_file(int threads, const std::string& report,
@@ -151,8 +151,8 @@ std::string ProfiledCommand::job_file(int threads, const std::string& report,
 }
 
 void ProfiledCommand::clear_results() const {
-  for (const auto& [folder, throw_away] : folders_) {
-    throw_away.clear();
+  for (const auto& [folder, scratch] : folders_) {
+    scratch.clear();
   }
 }
 

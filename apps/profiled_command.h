@@ -10,8 +10,8 @@
 #include "apps/commands.h"
 #include "apps/match_job.h"
 #include "apps/run_settings.h"
+#include "apps/scratch_folder.h"
 #include "apps/settings.h"
-#include "apps/throw_away_folder.h"
 #include "engine/profiling/profile_advice.h"
 
 namespace vantage::apps {
@@ -56,7 +56,7 @@ class ProfiledCommand {
   std::string text_;
   std::vector<std::string> remarks_;
   std::filesystem::path place_;
-  std::map<std::filesystem::path, ThrowAwayFolder> folders_;  // by the folder they stand for
+  std::map<std::filesystem::path, ScratchFolder> folders_;  // by the folder they stand for
 };
 
 }  // namespace vantage::apps

@@ -11,6 +11,7 @@
 #include "apps/vertical_error_report.h"
 #include "engine/rectification/row_error_cost.h"
 #include "engine/rectification/vertical_error.h"
+#include "engine/seconds_since.h"
 #include "scheduler/trace.h"
 
 namespace vantage::apps {
@@ -18,27 +19,28 @@ namespace {
 
 constexpr std::string_view kRows = "rows";
 
-struct Look {
+/// A check of rows, and how long it took.
+struct RowCheck {
   std::optional<VerticalError> error;
   double seconds = 0;
 };
 
-Look look_at_rows(const Photograph& left, const Photograph& right) {
+RowCheck check_rows(const Photograph& left, const Photograph& right) {
   const scheduler::Span span("check");
   const auto start = std::chrono::steady_clock::now();
-  Look look;
-  look.error = check_rectification(left, right);
-  look.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return look;
+  RowCheck check;
+  check.error = check_rectification(left, right);
+  check.seconds = seconds_since(start);
+  return check;
 }
 
-void tell_of(const Look& look, const Settings& settings, const CommonOptions& common,
+void tell_of(const RowCheck& check, const Settings& settings, const CommonOptions& common,
              bool expects_negative, std::string_view lines, RunReport& report) {
-  report.add_stage("check", look.seconds);
-  if (!look.error) {
+  report.add_stage("check", check.seconds);
+  if (!check.error) {
     return;
   }
-  const VerticalError& error = *look.error;
+  const VerticalError& error = *check.error;
   SettingValue values = vertical_error_values(error);
   values["is_rectified"] = is_rectified(error);
   const bool looks_exchanged = error.looks_exchanged() && !expects_negative;
@@ -73,7 +75,7 @@ void warn_unless_rectified(const Settings& settings, const CommonOptions& common
                            RunReport& report) {
   // The user of the pair reports images of different sizes.
   if (left.width() == right.width() && left.height() == right.height()) {
-    tell_of(look_at_rows(left, right), settings, common, expects_negative, kRows, report);
+    tell_of(check_rows(left, right), settings, common, expects_negative, kRows, report);
   }
 }
 
@@ -82,15 +84,15 @@ void warn_unless_rectified_beside(const std::function<void()>& work, const Setti
                                   std::string_view lines, const Photograph& left,
                                   const Photograph& right, Execution& execution,
                                   RunReport& report) {
-  Look look;
+  RowCheck check;
   execution.executor().parallel_for(2, [&](int task) {
     if (task == 0) {
       work();
     } else {
-      look = look_at_rows(left, right);
+      check = check_rows(left, right);
     }
   });
-  tell_of(look, settings, common, expects_negative, lines, report);
+  tell_of(check, settings, common, expects_negative, lines, report);
 }
 
 }  // namespace vantage::apps

@@ -15,8 +15,7 @@ namespace vantage::apps {
 void add_rectification_check_setting(
     Settings& settings, bool& wanted,
     const char* text =
-        "Do not check, and warn, whether rows correspond and whether left and right "
-        "are exchanged");
+        "Do not check, and warn, whether rows correspond and whether left and right are exchanged");
 
 /// Whether the user chose a range whose disparities are mostly negative. Call it before
 /// choose_disparities(), which replaces an automatic range.

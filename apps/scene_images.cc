@@ -89,9 +89,8 @@ void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
                       "downwards; paths are relative to the folder of the list");
   settings.input_path(
       "poses", input.poses, "PATH",
-      "Poses of hand-held cameras: a folder with a COLMAP model as text, whose "
-      "images are in --images; a TUM or KITTI trajectory; OpenCV's YAML or XML with "
-      "extrinsic_parameters");
+      "Poses of hand-held cameras: a folder with a COLMAP model as text, whose images are in "
+      "--images; a TUM or KITTI trajectory; OpenCV's YAML or XML with extrinsic_parameters");
   settings.input_path("intrinsics", input.intrinsics, "FILE",
                       "Camera of a trajectory: OpenCV's YAML or XML, COLMAP's cameras.txt, KITTI's "
                       "calib.txt, or a text fx fy cx cy [k1 k2 p1 p2 [k3]]");

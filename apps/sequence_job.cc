@@ -286,8 +286,8 @@ void check_sequence(SequenceJob& job, const Settings& settings, bool is_continue
     throw UsageError("--kitti-cameras has no effect without --calibration");
   }
   if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxFramesInFlight)) {
-    throw UsageError(fmt::format("in-flight is {}, expected a number from 1 to {}", *job.in_flight,
-                                 kMaxFramesInFlight));
+    throw UsageError(fmt::format("--in-flight is {}, expected a number from 1 to {}",
+                                 *job.in_flight, kMaxFramesInFlight));
   }
 }
 

@@ -29,13 +29,13 @@ namespace {
 void check_input_stream(const RunJob& job) {
   if (job.resume || job.force) {
     throw UsageError(fmt::format(
-        "{} is given, but the input is standard input, which cannot be read again; --overwrite "
+        "--{} is given, but the input is standard input, which cannot be read again; --overwrite "
         "starts again",
         job.resume ? "resume" : "force"));
   }
   if (job.shard) {
     throw UsageError(
-        "shard is given and stereo is -, expected a file: standard input is read once");
+        "--shard is given and --stereo is -, expected a file: standard input is read once");
   }
   const SequenceOptions& options = job.sequence;
   const char* per_shot = options.search_range_per_shot    ? "search-range"
@@ -45,10 +45,10 @@ void check_input_stream(const RunJob& job) {
                          : options.intensity_fit == FitScope::kShot ? "intensity-fit"
                                                                     : nullptr;
   if (per_shot != nullptr) {
-    throw UsageError(
-        fmt::format("{} is shot and stereo is -, expected another value: it needs all frames of a "
-                    "shot before the first; store the stream in a file",
-                    per_shot));
+    throw UsageError(fmt::format(
+        "--{} is shot and --stereo is -, expected another value: it needs all frames of a "
+        "shot before the first; store the stream in a file",
+        per_shot));
   }
 }
 
@@ -72,13 +72,13 @@ void check_stream(const RunJob& job, const Settings& settings) {
   if (options.saves(SequenceOutput::kComfort) || layout.streams().size() != 1 ||
       !is_picture(layout.streams().front().output)) {
     throw UsageError(
-        "output is -, expected --save with one output of pictures: preview, views, stereo, "
+        "--output is -, expected --save with one output of pictures: preview, views, stereo, "
         "depth-video, unmatched, right-unmatched, holes, sources or cyclopean-occlusion");
   }
   if (options.needs_matched_shots() || options.search_range_per_shot ||
       options.depth_scale.scope == DepthVideoScale::Scope::kShot) {
     throw UsageError(
-        "something is per shot and output is -, expected no shots: they need the whole input "
+        "an option is per shot and --output is -, expected no shots: they need the whole input "
         "first");
   }
 }

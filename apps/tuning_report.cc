@@ -49,8 +49,7 @@ std::string measured_text(const TunedUseReport& use, const TunedImages& images) 
   }
   if (use.search_rows < images.height_px) {
     text += fmt::format(
-        "; a frame of {} rows takes too long (the height of bands is left to the "
-        "cost model)",
+        "; a frame of {} rows takes too long (the height of bands is left to the cost model)",
         images.height_px);
   }
   return text;

@@ -60,21 +60,21 @@ void check_volume(const VolumeOutput& output, const MatchOptions& options,
   }
   const int levels = options.resolved().levels;
   if (output.level < 0 || output.level >= levels) {
-    throw UsageError(fmt::format("volume-level is {}, expected 0 to {}: there {} {} level{}",
+    throw UsageError(fmt::format("--volume-level is {}, expected 0 to {}: there {} {} level{}",
                                  output.level, levels - 1, levels == 1 ? "is" : "are", levels,
                                  levels == 1 ? "" : "s"));
   }
   if (output.rows && (output.rows->begin < 0 || output.rows->begin >= output.rows->end)) {
-    throw UsageError(
-        fmt::format("volume-rows is {}, expected two rows from 0 on, the first not below the last",
-                    text_of(*output.rows)));
+    throw UsageError(fmt::format(
+        "--volume-rows is {}, expected two rows from 0 on, the first not below the last",
+        text_of(*output.rows)));
   }
 }
 
 void require_volume_rows(const VolumeOutput& output, int image_rows) {
   const int rows = ((image_rows - 1) >> output.level) + 1;  // levels are rounded up
   if (output.rows && output.rows->end > rows) {
-    throw UsageError(fmt::format("volume-rows is {}, expected rows within 0:{}",
+    throw UsageError(fmt::format("--volume-rows is {}, expected rows within 0:{}",
                                  text_of(*output.rows), rows - 1));
   }
 }

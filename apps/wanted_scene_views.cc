@@ -139,8 +139,8 @@ void add_wanted_scene_views(Settings& settings, WantedSceneViews& wanted) {
                       "x_camera = R x_world + t, one view each");
   Setting& between =
       settings.add("between", "A:B:SHARE",
-                   "Of a scene with poses: view on the way from image A (share 0) to "
-                   "image B (1), by their numbers; repeatable");
+                   "Of a scene with poses: view on the way from image A (share 0) to image B (1), "
+                   "by their numbers; repeatable");
   between.list = true;
   between.set = [&wanted](const SettingValue& value) {
     std::vector<BetweenImages> views;

@@ -39,9 +39,8 @@ inline constexpr std::string_view kComfortSources[] = {
     "excursions. They are meant for screens of 46 to 70 inches (1.2 to 1.8 m).",
     "The rule of one degree says about the same: seen from three picture heights, a 16:9 screen is "
     "33 degrees wide, so one degree is 3 % of the width. Comfort depends on the distance and on "
-    "the "
-    "sign: T. Shibata, J. Kim, D. M. Hoffman, M. S. Banks, The zone of comfort, Journal of Vision "
-    "11(8):11, 2011.",
+    "the sign: T. Shibata, J. Kim, D. M. Hoffman, M. S. Banks, The zone of comfort, Journal of "
+    "Vision 11(8):11, 2011.",
     "Cut objects at the left and right border (window violations), jumps of depth at cuts: the "
     "defects are described by S. Delis, I. Mademlis, N. Nikolaidis, I. Pitas, Automatic detection "
     "of 3D quality defects in stereoscopic videos using binocular disparity, IEEE Transactions on "
@@ -50,7 +49,6 @@ inline constexpr std::string_view kComfortSources[] = {
     "A. Bokov, M. Erofeev, V. Napadovsky, Trends in S3D-movie quality evaluated on 105 films using "
     "10 metrics, Electronic Imaging, 2016. The limits are ours: 0.1 % of the height is one line of "
     "1080, about one minute of arc from three picture heights; a shot is exchanged if hidden "
-    "pixels "
-    "belong to the wrong side in more than two thirds of at least 100 places."};
+    "pixels belong to the wrong side in more than two thirds of at least 100 places."};
 
 }  // namespace vantage

@@ -289,10 +289,8 @@ std::vector<BookFigure> disparity_space_figures() {
            .section = "6.2",
            .title = "Support for two disparities near a boundary",
            .book = "Windows around a point a beside the square's edge and a "
-                   "point b in its corner, "
-                   "in the layers of the background's and of the foreground's "
-                   "disparity: corners "
-                   "get rounded, straight edges do not move.",
+                   "point b in its corner, in the layers of the background's and of the "
+                   "foreground's disparity: corners get rounded, straight edges do not move.",
            .defaults = {.size_px = 100, .pairs = {"rds-square"}, .seed = 1, .parameters = window},
            .method = "ssd",
            .make = make_support_of_points},
@@ -300,8 +298,7 @@ std::vector<BookFigure> disparity_space_figures() {
            .section = "6.3.1",
            .title = "Sections through the disparity space",
            .book = "Disparity space of rds by the membrane model: E0, after "
-                   "one and after ten "
-                   "iterations. Dark is strong support.",
+                   "one and after ten iterations. Dark is strong support.",
            .defaults = {.size_px = 100,
                         .iterations = {0, 1, 10},
                         .noise_sigmas = {kBookNoise},
@@ -313,10 +310,8 @@ std::vector<BookFigure> disparity_space_figures() {
            .section = "6.5.3",
            .title = "The four steps of Bayesian diffusion",
            .book = "Probabilities are smoothed along each column, converted to "
-                   "energies, diffused "
-                   "among neighbours and converted back. A drawing; here with "
-                   "the values of one "
-                   "column.",
+                   "energies, diffused among neighbours and converted back. A drawing; here with "
+                   "the values of one column.",
            .defaults = {.size_px = 100,
                         .iterations = {1},
                         .noise_sigmas = {kBookNoise},

@@ -142,8 +142,8 @@ FigureContent make_pairs(const FigureRun& run) {
       {"", draw_picture_sheet("Synthetic pairs", pictures, kColumns, kPictureWidth)});
   content.tables.push_back(std::move(table));
   content.images =
-      "generated; the book's texture 'real' is part of a photograph of grass that is "
-      "not public, ours is noise that looks like grass";
+      "generated; the book's texture 'real' is part of a photograph of grass that is not public, "
+      "ours is noise that looks like grass";
   return content;
 }
 

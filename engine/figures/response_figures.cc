@@ -175,8 +175,8 @@ ResponseSurface surface_of(const FigureImages& images, DisparityRange range_x,
 
 std::string discrimination_of(const ResponseSurface& surface) {
   return fmt::format(
-      "peak {:.1f} standard deviations above the mean, {:.2f} % of the displacements "
-      "above half its height",
+      "peak {:.1f} standard deviations above the mean, {:.2f} % of the displacements above half "
+      "its height",
       surface.peak_deviations, surface.near_peak_percent);
 }
 

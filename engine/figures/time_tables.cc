@@ -16,6 +16,7 @@
 #include "engine/figures/scene_maps.h"
 #include "engine/figures/several_images.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/seconds_since.h"
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "scheduler/machine.h"
@@ -30,8 +31,7 @@ double seconds_of(const Work& work, int runs = 3) {
   for (int i = 0; i < runs; ++i) {
     const auto start = std::chrono::steady_clock::now();
     work();
-    best = std::min(
-        best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    best = std::min(best, seconds_since(start));
   }
   return best;
 }

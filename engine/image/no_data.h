@@ -7,8 +7,8 @@
 
 namespace vantage {
 
-/// Rasters of satellites and other surveys: float values of any scale, NaN where there is no data.
-/// One channel.
+// Rasters of satellites and other surveys: float values of any scale, NaN where there is no data.
+// One channel.
 
 /// Whether any pixel has data.
 bool has_data(ImageView<const float> raster);

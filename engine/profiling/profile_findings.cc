@@ -61,8 +61,7 @@ std::string bound_of(const StageProfile& stage, const std::optional<ThreadRoofs>
   }
   return fmt::format(
       "It reaches {} {}, so neither arithmetic nor bandwidth bounds it: what remains is waiting "
-      "for "
-      "results and instructions that are no arithmetic.",
+      "for results and instructions that are no arithmetic.",
       reached, roof);
 }
 

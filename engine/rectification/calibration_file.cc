@@ -316,8 +316,8 @@ StereoCalibration calibration_of_depth_matrix(const Eigen::Matrix4d& q) {
   const double per_baseline = q(3, 2);
   if (q(0, 0) != 1 || !(q(1, 1) > 0) || !(q(2, 3) > 0) || !(per_baseline > 0)) {
     throw Error(
-        "Q is not that of cameras side by side, expected rows (1 0 0 -cx), (0 1 0 -cy), "
-        "(0 0 0 f), (0 0 1/B doffs/B)");
+        "Q is not that of cameras side by side, expected rows (1 0 0 -cx), (0 1 0 -cy), (0 0 0 f), "
+        "(0 0 1/B doffs/B)");
   }
   StereoCalibration calibration{.is_rectified = true};
   calibration.left.matrix << q(2, 3), 0, -q(0, 3), 0, q(2, 3) / q(1, 1), -q(1, 3) / q(1, 1), 0, 0,

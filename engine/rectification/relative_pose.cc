@@ -229,8 +229,8 @@ RefinedPose refine_relative_pose(const StereoCalibration& calibration,
                                             pose.direction.dot(given.direction)));
   if (result.turned_degrees > kMaxTurn_degrees || result.moved_degrees > kMaxMove_degrees) {
     throw Error(fmt::format(
-        "the images show a pose {:.1f} degrees from the given one, with a "
-        "baseline {:.1f} degrees from its direction, expected at most {} and {}",
+        "the images show a pose {:.1f} degrees from the given one, with a baseline {:.1f} degrees "
+        "from its direction, expected at most {} and {}",
         result.turned_degrees, result.moved_degrees, kMaxTurn_degrees, kMaxMove_degrees));
   }
   return result;

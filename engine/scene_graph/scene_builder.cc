@@ -222,8 +222,7 @@ void SceneBuilder::require_all_joined() const {
                      [&](const RefusedEdge& edge) { return meets(edge.first, edge.second); });
     if (!is_joined && refused != scene_.refused.end()) {
       throw Error(fmt::format(
-          "{}: all its edges were refused, expected at least one; the one with "
-          "{}: {}",
+          "{}: all its edges were refused, expected at least one; the one with {}: {}",
           image_file(vertex).string(),
           image_file(refused->first + refused->second - vertex).string(), refused->reason));
     }

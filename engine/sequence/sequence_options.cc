@@ -199,9 +199,8 @@ void check_formats(const SequenceOptions& options) {
         SequenceOutput::kDepthResolution}) {
     if (options.saves(output) && find_map_format(map_name, MapContent::kConfidence) == nullptr) {
       throw UsageError(fmt::format(
-          "format is {}, which holds no floats, but save has {}; expected "
-          "{}",
-          options.map_format, name_of(output), listed_map_formats(MapContent::kConfidence, "")));
+          "format is {}, which holds no floats, but save has {}; expected {}", options.map_format,
+          name_of(output), listed_map_formats(MapContent::kConfidence, "")));
     }
   }
   const std::string depth_name = "depth." + options.depth_format;

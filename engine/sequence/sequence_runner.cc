@@ -100,7 +100,8 @@ class Run {
     }
     if (run_.pairs.is_stream()) {
       finish_stream();
-      // Who writes it is often stopped together with the run.
+      // Ctrl-C stops the program that writes the stream as well: the stream ends before the stop is
+      // noticed.
       report_.interrupted = run_.stop != nullptr && run_.stop->load();
     }
     queue_.finish();

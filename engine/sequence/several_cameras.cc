@@ -49,8 +49,7 @@ bool SeveralCameras::fetch(FramePair& pair) {
     if (missing != missing_left) {
       pair.remarks.push_back(
           fmt::format("{} frames are missing in the left video but {} in that of camera {} before "
-                      "pair {}: from "
-                      "here on the images may not be of the same moment",
+                      "pair {}: from here on the images may not be of the same moment",
                       missing_left, missing, k + 3, pair.index));
     }
   }

@@ -50,7 +50,7 @@ struct FrameDependence {
   bool whole_chunks = false;
 };
 
-/// `frames`, of one chunk at least at their start, with the frames before them that they depend on.
+/// A run of `frames`, and before them of those frames of their chunk that the first one depends on.
 FrameRun run_of(const FrameSelection& selection, FrameDependence dependence, FrameRange frames);
 
 /// Remaining work on a shard's frames, in order. Each run lies within one chunk.

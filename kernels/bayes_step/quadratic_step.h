@@ -42,8 +42,8 @@ struct QuadraticStepRow {
 /// Logarithms (base 2) of probabilities stop here.
 inline constexpr float kLowestLogarithm = -1e9F;
 
-/// The column between as many floats on either side, and for a two-dimensional search one of its
-/// runs likewise, all runs, and the smoothed column.
+/// A column with a margin as wide on either side. For a two-dimensional search also a row of
+/// candidates with margins as wide, all rows smoothed along themselves, and the smoothed column.
 inline int quadratic_work_floats(int lanes, const CandidatePlane& plane = {}) {
   return 3 * lanes + (plane.is_given() ? (3 + plane.rows) * plane.row_lanes() + lanes +
                                              kLaneMultiple + plane.row_lanes()

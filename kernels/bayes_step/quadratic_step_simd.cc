@@ -190,7 +190,7 @@ class QuadraticColumns {
     const FloatTag df;
     const CandidatePlane& plane = row_.plane;
     const int row_lanes = plane.row_lanes();
-    float* const run = row_.work + 3 * lanes_ + row_lanes;
+    float* const run = row_.work + 3 * lanes_ + row_lanes;  // a row of candidates
     float* const across = run + 2 * row_lanes;
     float* const smoothed = across + plane.rows * row_lanes;
     std::fill_n(run - row_lanes, 3 * row_lanes, kNoCandidate);

@@ -9,13 +9,12 @@ namespace vantage::kernels {
 enum class CertaintyMeasure {
   kMargin,  ///< (Emin2 − Emin) / Σ E, 0 when Σ E = 0 (6.13); one candidate: 0
   /// Σ p log p ≤ 0, p ∝ exp(−min(scale · (E − Emin), kMaxCertaintyNats)) (6.15). Its *relative*
-  /// error is small, however close it is to 0: columns with a sure winner are compared, not their
-  /// rounding errors.
+  /// error is small, however close it is to 0, so that columns with a sure winner are compared by
+  /// their certainties, not by rounding errors.
   kEntropy,
 };
 
-/// Of a candidate with larger odds against it only this much counts: 2 to this power is a normal
-/// float.
+/// The largest exponent that counts: exp(−kMaxCertaintyNats) = 2^kMinExponent is a normal float.
 inline constexpr double kMaxCertaintyNats = -double{kMinExponent} / kLog2E;
 
 /// One row of diffusion with local stopping (6.4): a column keeps its cells if the step would lower

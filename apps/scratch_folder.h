@@ -5,13 +5,13 @@
 namespace vantage::apps {
 
 /// A hidden scratch folder on the file system of a path, removed with this object.
-class ThrowAwayFolder {
+class ScratchFolder {
  public:
   /// In the nearest folder above `path` that is there. Throws Error when it cannot be made.
-  explicit ThrowAwayFolder(const std::filesystem::path& path);
-  ThrowAwayFolder(const ThrowAwayFolder&) = delete;
-  ThrowAwayFolder& operator=(const ThrowAwayFolder&) = delete;
-  ~ThrowAwayFolder();
+  explicit ScratchFolder(const std::filesystem::path& path);
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder();
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Removes what is in it.

@@ -1,4 +1,4 @@
-#include "apps/throw_away_folder.h"
+#include "apps/scratch_folder.h"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ fs::path nearest_folder_above(const fs::path& path) {
 
 }  // namespace
 
-ThrowAwayFolder::ThrowAwayFolder(const fs::path& path) {
+ScratchFolder::ScratchFolder(const fs::path& path) {
   const fs::path folder = nearest_folder_above(path);
   std::string name = (folder / ".vantage-profile-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
@@ -37,12 +37,12 @@ ThrowAwayFolder::ThrowAwayFolder(const fs::path& path) {
   path_ = name;
 }
 
-ThrowAwayFolder::~ThrowAwayFolder() {
+ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   fs::remove_all(path_, ignored);
 }
 
-void ThrowAwayFolder::clear() const {
+void ScratchFolder::clear() const {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(path_, ignored)) {
     fs::remove_all(entry.path(), ignored);
