@@ -319,7 +319,10 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
       place.costs = &levels.costs(level);
       place.result = &levels.start_result(level);
     }
-    const auto* const searched = parts_of(level);
+    const auto* searched = parts_of(level);
+    if (searched != nullptr && searched->has_all_winners) {
+      searched = nullptr;
+    }
     std::vector<scheduler::Region> of_map;
     if (searched != nullptr) {
       place.regions = &searched->winners;

@@ -45,12 +45,13 @@ struct ReducedParts {
   std::vector<scheduler::Region> maps;
 };
 
-/// searched: size of the images that are searched. iterations: of levels of windows.
+/// searched: size of the images that are searched.
 ReducedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int reductions,
-                      int iterations) {
+                      const MethodParameters& parameters) {
+  const std::vector<scheduler::Extent> levels = level_extents(searched, parameters.levels);
   const scheduler::Extent level = coarser_extent(searched);
   const int columns_per_column = 1 << reductions;
-  const int reach = coarse_reach(iterations);
+  const int reach = coarse_reach(parameters.final_iterations);
   ReducedParts parts;
   parts.maps = tiles.regions();
   TileMask winners;
@@ -61,9 +62,14 @@ ReducedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int red
     parts.coarse_windows = windows.regions();
     winners = windows.widened(level, 2, reach, kPartSidePx);
   }
-  // Level 2 is so small that parts of it would take longer than all of it.
-  parts.search.levels = {
-      {tiles.widened(level, columns_per_column, 0, kPartSidePx).regions(), winners.regions()}};
+  TileMask costs = tiles.widened(level, columns_per_column, 0, kPartSidePx);
+  parts.search.levels = {{.costs = costs.regions(), .winners = winners.regions()}};
+  // Level 2 is so small that parts of its search would take longer than all of it.
+  for (std::size_t coarser = 2; coarser < levels.size(); ++coarser) {
+    costs = costs.widened(levels[coarser], 2, 0, kPartSidePx);
+    parts.search.levels.push_back(
+        {.costs = costs.regions(), .winners = {}, .has_all_winners = true});
+  }
   return parts;
 }
 
@@ -112,12 +118,9 @@ ResolvedMatchOptions reduced_options(const ResolvedMatchOptions& options,
   return result;
 }
 
-void ReducedMatcher::prepare(const Photograph& left, const Photograph& right, int reductions,
-                             Work& work) const {
-  work.images[0].prepare(left, reductions, execution_);
-  work.images[1].prepare(right, reductions, execution_);
+void ReducedMatcher::prepare_costs(int reductions, Work& work) const {
   work.costs.resize(static_cast<std::size_t>(reductions) + 1);
-  const DisparityRange range = possible_range(options_, left);
+  const DisparityRange range = possible_range(options_, work.images[0].reduced(0));
   for (int r = 0; r <= reductions; ++r) {
     const ResolvedMatchOptions options = at_reduction(options_, range, r);
     const Photograph& left_image = work.images[0].reduced(r);
@@ -152,8 +155,8 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
   const ImageView<float> size(nullptr, searched.width(), searched.height(), 1, 0);
   ReducedParts parts;
   if (tiles != nullptr) {
-    parts = parts_of(*tiles, {searched.width(), searched.height()}, reductions,
-                     options_.parameters.final_iterations);
+    parts =
+        parts_of(*tiles, {searched.width(), searched.height()}, reductions, options_.parameters);
   }
   MapSearch(search, search.parameters, execution_, search_work, report)
       .compute(side, input, {.disparity_px = size},
@@ -259,45 +262,59 @@ void ReducedMatcher::refine(const Outputs& outputs, PreviousMaps* previous, Work
 }
 
 void ReducedMatcher::match(const Photograph& left, const Photograph& right, const Outputs& outputs,
-                           PreviousMaps* previous, DisparityMaps& maps, StageClock& clock,
-                           MatchReport& report) const {
+                           PreviousMaps* previous, DeferredMatch* deferred, DisparityMaps& maps,
+                           StageClock& clock, MatchReport& report) const {
+  using Loan = ObjectPool<Work>::Loan;
   const int reductions = search_reductions(options_, {left.width(), left.height()});
-  const auto work = works_.borrow();
-  prepare(left, right, reductions, *work);
+  const bool is_resumed = previous == nullptr && deferred != nullptr && deferred->is_pending;
+  const std::shared_ptr<Loan> loan =
+      is_resumed ? std::static_pointer_cast<Loan>(std::exchange(*deferred, {}).prepared)
+                 : std::shared_ptr<Loan>(new Loan(works_.borrow()));
+  Work& work = **loan;
+  if (!is_resumed) {
+    work.images[0].prepare(left, reductions, execution_);
+    work.images[1].prepare(right, reductions, execution_);
+  }
   const bool is_checked = options_.refinement && options_.refinement->cross_check;
   const bool wants_confidence =
       outputs.confidence || (options_.refinement && uses_confidence(*options_.refinement));
   if (previous != nullptr) {
     clock.start("changes");
-    const Photograph& half = work->images[0].reduced(1);
+    const Photograph& half = work.images[0].reduced(1);
     const std::uint32_t wanted =
         (outputs.left || is_checked ? 1U : 0U) | (outputs.right || is_checked ? 2U : 0U) |
         (outputs.left ? 4U : 0U) | (outputs.right ? 8U : 0U) | (wants_confidence ? 16U : 0U);
-    if (!previous->choose(half, work->images[1].reduced(1),
+    if (!previous->choose(half, work.images[1].reduced(1),
                           {{half.width(), half.height()}, wanted})) {
       previous = nullptr;
       report.searched_share = 1;
+      if (deferred != nullptr) {
+        *deferred = {.is_pending = true, .prepared = loan};
+        return;
+      }
     }
+    clock.start("prepare");
   }
+  prepare_costs(reductions, work);
   const bool has_both = is_checked || (outputs.left && outputs.right);
   for (const Side side : {Side::kLeft, Side::kRight}) {
-    MatchedMap& half = work->halves.of(side);
+    MatchedMap& half = work.halves.of(side);
     half.disparity_px.resize(0, 0);
     if (!((side == Side::kLeft ? outputs.left : outputs.right) || is_checked)) {
       continue;
     }
     clock.start(side == Side::kLeft ? "match left" : "match right");
     if (previous != nullptr) {
-      compute_changed(side, reductions, wants_confidence, *previous, *work, report);
+      compute_changed(side, reductions, wants_confidence, *previous, work, report);
     } else {
       const CostSharing sharing = !has_both             ? CostSharing::kNone
                                   : side == Side::kLeft ? CostSharing::kStores
                                                         : CostSharing::kUses;
-      compute(side, reductions, wants_confidence, nullptr, sharing, work->search, *work, half,
+      compute(side, reductions, wants_confidence, nullptr, sharing, work.search, work, half,
               report);
     }
   }
-  refine(outputs, previous, *work, clock);
+  refine(outputs, previous, work, clock);
   clock.start("enlarge");
   for (const Side side : {Side::kLeft, Side::kRight}) {
     MatchedMap& map = maps.of(side);
@@ -305,8 +322,8 @@ void ReducedMatcher::match(const Photograph& left, const Photograph& right, cons
       map = {};
       continue;
     }
-    const ReducedImages& images = work->images[index_of(side)];
-    enlarge_map(work->halves.of(side), images.reduced(0), images.reduced(1), execution_, map);
+    const ReducedImages& images = work.images[index_of(side)];
+    enlarge_map(work.halves.of(side), images.reduced(0), images.reduced(1), execution_, map);
     if (!outputs.confidence) {
       map.confidence.resize(0, 0);
     }

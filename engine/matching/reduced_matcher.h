@@ -11,6 +11,7 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/costs/cost_image.h"
+#include "engine/matching/deferred_match.h"
 #include "engine/matching/map_search.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
@@ -56,11 +57,11 @@ class ReducedMatcher {
     bool confidence = false;
   };
   /// Photographs of equal size, for which there are reductions. `previous`: of the pair before,
-  /// replaced by those of this one; null: everything is searched. Throws Error when no pixel has a
-  /// candidate.
+  /// replaced by those of this one; null: everything is searched. deferred: as
+  /// MatchRequest::deferred. Throws Error when no pixel has a candidate.
   void match(const Photograph& left, const Photograph& right, const Outputs& outputs,
-             PreviousMaps* previous, DisparityMaps& maps, StageClock& clock,
-             MatchReport& report) const;
+             PreviousMaps* previous, DeferredMatch* deferred, DisparityMaps& maps,
+             StageClock& clock, MatchReport& report) const;
 
   void add_memory_use(MemoryUse& use) const;
   /// Memory of match() but for strips and the outputs: about.
@@ -82,7 +83,7 @@ class ReducedMatcher {
     RefinementWork refinement;
   };
 
-  void prepare(const Photograph& left, const Photograph& right, int reductions, Work& work) const;
+  void prepare_costs(int reductions, Work& work) const;
   /// Winners at half size. `tiles`: the only ones to write; null: all. search: of the last
   /// call for this side, if there are `tiles`.
   void compute(Side side, int reductions, bool wants_confidence, const TileMask* tiles,

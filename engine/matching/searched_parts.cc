@@ -8,7 +8,8 @@
 namespace vantage {
 namespace {
 
-/// Parts of coarser levels would be nearly all of them, because each level reads around them.
+/// Winners of parts of coarser levels would be nearly all of them, because each level reads around
+/// them.
 constexpr int kMaxLevels = 2;
 
 }  // namespace
@@ -20,13 +21,16 @@ SearchedParts searched_parts(const TileMask& tiles, const MethodParameters& para
   parts.map = tiles;
   TileMask costs = tiles;
   TileMask winners = tiles;
-  const int end = std::min(kMaxLevels + 1, static_cast<int>(extents.size()));
-  for (int level = 1; level < end; ++level) {
+  for (int level = 1; level < static_cast<int>(extents.size()); ++level) {
     const scheduler::Extent extent = extents[static_cast<std::size_t>(level)];
-    const int reach = coarse_reach(at_level(parameters, level - 1).iterations);
     costs = costs.widened(extent, 2, 0, kPartSidePx);
+    if (level > kMaxLevels) {
+      parts.levels.push_back({.costs = costs.regions(), .winners = {}, .has_all_winners = true});
+      continue;
+    }
+    const int reach = coarse_reach(at_level(parameters, level - 1).iterations);
     winners = winners.widened(extent, 2, reach, kPartSidePx);
-    parts.levels.push_back({costs.regions(), winners.regions()});
+    parts.levels.push_back({.costs = costs.regions(), .winners = winners.regions()});
   }
   return parts;
 }

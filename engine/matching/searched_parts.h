@@ -15,6 +15,7 @@ struct SearchedParts {
   struct OfLevel {
     std::vector<scheduler::Region> costs;
     std::vector<scheduler::Region> winners;  ///< and the result, which is undefined elsewhere
+    bool has_all_winners = false;            ///< they are computed everywhere
   };
   std::vector<OfLevel> levels;  ///< level 1 first; levels that are not here are computed everywhere
   TileMask map;                 ///< tiles of the finest level

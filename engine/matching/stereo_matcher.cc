@@ -299,7 +299,11 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   }
   MatchReport own_report;
   MatchReport& times = report != nullptr ? *report : own_report;
-  times = {};
+  const bool is_resumed =
+      request.previous == nullptr && request.deferred != nullptr && request.deferred->is_pending;
+  if (!is_resumed) {
+    times = {};
+  }
   StageClock clock(times);
   clock.start("prepare");
   require_memory(left);
@@ -315,8 +319,11 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     parts_->reduced.match(
         left, right,
         {.left = request.left, .right = request.right, .confidence = request.confidence},
-        request.previous, maps, clock, times);
+        request.previous, request.deferred, maps, clock, times);
     return;
+  }
+  if (is_resumed) {
+    *request.deferred = {};
   }
   const int check_level = this->check_level({left.width(), left.height()});
   MapTask of_left{.side = Side::kLeft, .image = &left, .map = &maps.left};
@@ -334,16 +341,21 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     estimate_exposure(left, right, *prepared, times);
     clock.start("prepare");
   }
+  const bool confidence = wants_confidence(request);
+  if (request.previous != nullptr) {
+    clock.start("changes");
+    choose_tiles(of_left, of_right, confidence, *request.previous, *prepared, times);
+    if (of_left.previous == nullptr && request.deferred != nullptr) {
+      request.deferred->is_pending = true;
+      return;
+    }
+    clock.start("prepare");
+  }
   prepare_inputs(of_left, of_right, uses_prior, *prepared, request.volumes);
   if (uses_prior) {
     of_left.input.prior_px = request.prior.left_px;
     of_right.input.prior_px = request.prior.right_px;
     of_left.input.prior_weight = of_right.input.prior_weight = request.prior.weight;
-  }
-  const bool confidence = wants_confidence(request);
-  if (request.previous != nullptr) {
-    clock.start("changes");
-    choose_tiles(of_left, of_right, confidence, *request.previous, *prepared, times);
   }
   if (of_left.need.any() && of_right.need.any() && of_left.previous == nullptr && !is_symmetric &&
       !in_force_.disparities_y &&

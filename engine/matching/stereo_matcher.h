@@ -11,6 +11,7 @@
 #include "engine/image/image.h"
 #include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
+#include "engine/matching/deferred_match.h"
 #include "engine/matching/match_inputs.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
@@ -42,6 +43,10 @@ struct MatchRequest {
   /// For match() without reuse_obstacle(), prior and volumes: tiles keep the maps of the pair
   /// before. Replaced by the maps of this pair; a request with it runs alone.
   PreviousMaps* previous = nullptr;
+  /// With `previous`: where the images moved, match() makes no maps, but sets this. The same call
+  /// with this and without `previous` makes them: in any thread, also while pairs after it are
+  /// matched.
+  DeferredMatch* deferred = nullptr;
 };
 
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).

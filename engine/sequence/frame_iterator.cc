@@ -124,7 +124,7 @@ class FrameIterator::Work {
     steps.read = [this](int slot) { return read(slots_[static_cast<std::size_t>(slot)]); };
     steps.prepare = within(&Work::prepare);
     steps.compute = within(&Work::compute);
-    steps.encode = [](int) {};
+    steps.encode = within(&Work::finish);
     steps.write = [this](int slot) { write(slots_[static_cast<std::size_t>(slot)]); };
     steps.compute_in_order = worker_.computes_in_order();
     const auto skip = [this](int slot, const std::exception_ptr& error) {
@@ -135,6 +135,7 @@ class FrameIterator::Work {
 
   void prepare(FrameSlot& slot) { worker_.prepare(slot); }
   void compute(FrameSlot& slot) { worker_.compute(slot); }
+  void finish(FrameSlot& slot) { worker_.finish(slot); }
 
   bool read(std::unique_ptr<FrameSlot>& slot) {
     {

@@ -27,7 +27,10 @@ class FrameReuse final : public PreviousMaps {
  private:
   bool choose_tiles(const Image<std::uint8_t>& left, const Image<std::uint8_t>& right,
                     bool is_first, std::array<TileMask, 2>& searched) override;
+  bool find_changed(Side side, const Image<std::uint8_t>& image, TileMask& changed);
+  void add_changed_partners(Side side, TileMask& changed) const;
   [[nodiscard]] bool has_changed(Side side, const scheduler::Region& pixels) const;
+  [[nodiscard]] bool have_partners_changed(Side side, const scheduler::Region& pixels) const;
 
   StillPixels still_pixels_;
   Execution& execution_;

@@ -19,6 +19,7 @@
 #include "engine/sequence/pending_files.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/shot_cuts.h"
+#include "engine/sequence/shot_matchers.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "engine/view_geometry/depth_resolution.h"
 #include "engine/view_geometry/view_pose.h"
@@ -47,8 +48,10 @@ struct FrameSlot {
   PosteriorMoments posterior;  ///< of the reference's pixels
   CyclopeanMap cyclopean;
   MatchReport match;
-  bool may_be_cut = false;      ///< the range, by where matches lie
-  std::optional<CutRange> cut;  ///< what a look at such a frame found
+  std::shared_ptr<const ShotMatcher> shot;  ///< what the frame is matched by
+  DeferredMatch deferred;                   ///< after `shot`, whose matcher it needs
+  bool may_be_cut = false;                  ///< the range, by where matches lie
+  std::optional<CutRange> cut;              ///< what a look at such a frame found
   /// The new views of SequenceOptions::views, then those of the stereo picture that are not
   /// photographs.
   std::vector<SynthesizedView> views;

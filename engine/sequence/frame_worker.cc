@@ -164,19 +164,34 @@ void FrameWorker::compute(FrameSlot& slot) {
   if (slot.stored != nullptr && maps_are_stored_) {
     read_maps(slot);
   }
+  slot.deferred = {};
+  slot.shot.reset();
   if (slot.stored == nullptr || !maps_are_stored_) {
     const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kMatch));
-    const std::shared_ptr<const ShotMatcher> shot =
-        matchers_.of(slot.frame, slot.pair.details.disparities);
-    match(slot, *shot);
+    slot.shot = matchers_.of(slot.frame, slot.pair.details.disparities);
+    match(slot, *slot.shot);
+  }
+}
+
+void FrameWorker::finish(FrameSlot& slot) {
+  const std::shared_ptr<const ShotMatcher> shot = std::move(slot.shot);
+  DeferredMatch deferred = std::exchange(slot.deferred, {});
+  if (slot.is_absent || (slot.is_lead_in && !options_.measure_flicker)) {
+    return;
+  }
+  const BusyClock::Activity activity(compute_clock_);
+  if (shot != nullptr) {
+    const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kMatch));
+    if (deferred.is_pending) {
+      MatchRequest request = this->request();
+      request.deferred = &deferred;
+      shot->matcher.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
+    }
     check_range(slot, shot->options);
     if (options_.saves_cyclopean()) {
       const TimedStep step(slot, "cyclopean map", accounts_.of(RunStep::kMatch));
       make_cyclopean_map(slot.maps.left, execution_, slot.cyclopean);
     }
-  }
-  if (slot.is_lead_in && !options_.measure_flicker) {
-    return;
   }
   synthesize(slot);
   if (slot.is_lead_in) {
@@ -305,6 +320,7 @@ void FrameWorker::match_with_reuse(FrameSlot& slot, const StereoMatcher& matcher
                                    MatchRequest request, bool is_first) {
   reuse_.start_frame(slot.frame % options_.chunk_frames, is_first);
   request.previous = &reuse_;
+  request.deferred = &slot.deferred;
   try {
     matcher.match(*slot.left, *slot.right, request, slot.maps, &slot.match);
   } catch (...) {

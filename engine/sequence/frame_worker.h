@@ -59,17 +59,19 @@ class FrameWorker {
   [[nodiscard]] bool computes_in_order() const { return options_.temporal.uses_past(); }
 
   /// Decodes and rectifies. Thread rule: concurrently for different slots; the same holds for
-  /// encode(), and for compute() unless computes_in_order().
+  /// finish() and encode(), and for compute() unless computes_in_order().
   void prepare(FrameSlot& slot) const;
-  /// Maps, new views, pictures; for a stored frame, only the pictures of videos. Its maps are read
-  /// if all that is needed is in files with their original content; otherwise it is no longer a
-  /// stored frame. Throws Error if the images do not match.
+  /// Maps, unless they need no other frame and can wait for finish(). Those of a stored frame are
+  /// read if all that is needed is in files with their original content; otherwise it is no longer
+  /// a stored frame. Throws Error if the images do not match.
   void compute(FrameSlot& slot);
+  /// New views, pictures; for a stored frame, only the pictures of videos. Throws as compute().
+  void finish(FrameSlot& slot);
   /// Writes the files of a frame that is neither a lead-in nor stored, without their final names.
   /// Throws OutputError.
   void encode(FrameSlot& slot) const;
 
-  /// Time during which at least one frame was in compute(), or rectified.
+  /// Time during which at least one frame was in compute() or finish(), or rectified.
   [[nodiscard]] double compute_seconds() const { return compute_clock_.seconds(); }
 
   /// Memory of matching, see StereoMatcher, and "frame before": what TemporalOptions::reuse keeps.

@@ -85,7 +85,10 @@ class Run {
     steps.read = [&](int slot) { return read(slot_of(slot)); };
     steps.prepare = [&](int slot) { worker_.prepare(slot_of(slot)); };
     steps.compute = [&](int slot) { worker_.compute(slot_of(slot)); };
-    steps.encode = [&](int slot) { worker_.encode(slot_of(slot)); };
+    steps.encode = [&](int slot) {
+      worker_.finish(slot_of(slot));
+      worker_.encode(slot_of(slot));
+    };
     steps.write = [&](int slot) { write(slot_of(slot)); };
     steps.compute_in_order = worker_.computes_in_order();
     const auto skip = [&](int slot, const std::exception_ptr& error) {

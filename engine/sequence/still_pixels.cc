@@ -97,11 +97,19 @@ StillPixels::StillPixels(double threshold) : limit_(0) {
 
 std::int64_t StillPixels::find(const Image<std::uint8_t>& before, const Image<std::uint8_t>& now,
                                Execution& execution, Mask& still) const {
+  still.resize(now.width(), now.height());
+  return find_in_rows(before, now, {0, now.height()}, execution, still);
+}
+
+std::int64_t StillPixels::find_in_rows(const Image<std::uint8_t>& before,
+                                       const Image<std::uint8_t>& now, scheduler::Range rows,
+                                       Execution& execution, Mask& still) const {
   const int width = now.width();
   const int height = now.height();
-  still.resize(width, height);
   std::atomic<std::int64_t> count = 0;
-  execution.for_each_band(height, [&](int first_row, int end_row) {
+  execution.for_each_band(rows.size(), [&](int first_of_rows, int end_of_rows) {
+    const int first_row = rows.begin + first_of_rows;
+    const int end_row = rows.begin + end_of_rows;
     const auto memory = execution.scratch().lease(sizeof(std::int16_t) * ChangeRows::values(width));
     ChangeRows changes(before, now, reinterpret_cast<std::int16_t*>(memory.data()));
     for (int y = std::max(0, first_row - 1); y <= first_row; ++y) {

@@ -154,6 +154,41 @@ TEST_P(FrameReuseTest, AfterACutAllIsSearched) {
   EXPECT_LT(*report_.searched_share, 0.3);
 }
 
+TEST_P(FrameReuseTest, PairsThatMovedCanBeMatchedLater) {
+  const auto look = [&](const Pair& pair, DeferredMatch& deferred, DisparityMaps& maps) {
+    reuse_.start_frame(frame_, frame_ == 0);
+    ++frame_;
+    matcher_.match(pair.left, pair.right, {.previous = &reuse_, .deferred = &deferred}, maps,
+                   &report_);
+  };
+  const Pair before = pair_with_square(100);
+  const Pair moved = pair_with_square(100, 7);
+  const Pair after = pair_with_square(100, 8);
+  DisparityMaps maps;
+  DeferredMatch none;
+  look(before, none, maps);
+  EXPECT_FALSE(none.is_pending);
+  EXPECT_TRUE(test::identical(maps, match(before, false)));
+  DisparityMaps maps_of_moved;
+  DeferredMatch deferred;
+  look(moved, deferred, maps_of_moved);
+  EXPECT_TRUE(deferred.is_pending);
+  EXPECT_TRUE(maps_of_moved.left.disparity_px.empty());
+  MatchReport report = report_;
+  DeferredMatch deferred_after;
+  look(after, deferred_after, maps);
+  EXPECT_TRUE(deferred_after.is_pending);
+  look(after, none, maps);
+  EXPECT_FALSE(none.is_pending) << "does not move";
+  EXPECT_TRUE(test::identical(maps, match(after, false)));
+  matcher_.match(moved.left, moved.right, {.deferred = &deferred}, maps_of_moved, &report);
+  EXPECT_FALSE(deferred.is_pending);
+  EXPECT_EQ(report.searched_share, 1);
+  EXPECT_TRUE(test::identical(maps_of_moved, match(moved, false)));
+  EXPECT_TRUE(test::identical(next(after), match(after, false)));
+  EXPECT_LT(*report_.searched_share, 0.3) << "kept the maps of the frame before";
+}
+
 TEST_P(FrameReuseTest, TilesWhosePartnersChangedAreSearched) {
   Pair pair = pair_with_square(-1);
   next(pair);
