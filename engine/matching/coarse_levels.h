@@ -30,6 +30,12 @@ int level_cell_bytes(const MethodParameters& parameters);
 /// candidate blocks of pruned levels. Working memory, reused without reallocation.
 class CoarseLevels {
  public:
+  CoarseLevels() = default;
+  /// keeps_costs: a later search of parts (SearchedParts) reads those of this one, so that there
+  /// are no bands.
+  explicit CoarseLevels(bool keeps_costs) : keeps_costs_(keeps_costs) {}
+
+  [[nodiscard]] bool keeps_costs() const { return keeps_costs_; }
   /// `extents`: sizes of the levels, the image's own first. `bands`: the costs of their levels have
   /// no memory yet.
   void resize(const MethodParameters& parameters, const std::vector<scheduler::Extent>& extents,
@@ -78,6 +84,7 @@ class CoarseLevels {
  private:
   [[nodiscard]] int pruned_levels() const { return static_cast<int>(blocks_.size()); }
 
+  bool keeps_costs_ = false;
   std::vector<LevelVolume> costs_;
   LevelBands bands_;
   LevelVolume other_costs_;  ///< empty unless shared

@@ -252,7 +252,7 @@ LevelCells match_coarse_to_fine(const MethodParameters& parameters,
       level_extents({geometry.width, outputs.disparity_px.height()}, parameters.levels);
   const int coarsest = static_cast<int>(extents.size()) - 1;
   const bool may_have_bands =
-      parts == nullptr && volumes.empty() && input.sharing == CostSharing::kNone;
+      !levels.keeps_costs() && volumes.empty() && input.sharing == CostSharing::kNone;
   levels.resize(
       parameters, extents, geometry.count,
       may_have_bands

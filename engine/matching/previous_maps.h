@@ -30,7 +30,7 @@ class PreviousMaps {
   struct OfSide {
     MatchedMap winners;  ///< disparities and confidence, before refinement
     TileMask searched;   ///< tiles to search in the next map, of the map's size
-    MapSearchWork search;
+    MapSearchWork search{CoarseLevels(true)};
     KeptRefinement refinement;
     DisparityMap check_px;               ///< check map beside a whole map
     Image<std::int32_t> coarse_winners;  ///< of the level that the other map is checked against

@@ -264,14 +264,12 @@ void ReducedMatcher::refine(const Outputs& outputs, PreviousMaps* previous, Work
 void ReducedMatcher::match(const Photograph& left, const Photograph& right, const Outputs& outputs,
                            PreviousMaps* previous, DeferredMatch* deferred, DisparityMaps& maps,
                            StageClock& clock, MatchReport& report) const {
-  using Loan = ObjectPool<Work>::Loan;
   const int reductions = search_reductions(options_, {left.width(), left.height()});
-  const bool is_resumed = previous == nullptr && deferred != nullptr && deferred->is_pending;
-  const std::shared_ptr<Loan> loan =
-      is_resumed ? std::static_pointer_cast<Loan>(std::exchange(*deferred, {}).prepared)
-                 : std::shared_ptr<Loan>(new Loan(works_.borrow()));
-  Work& work = **loan;
-  if (!is_resumed) {
+  const auto loan = works_.borrow();
+  Work& work = *loan;
+  if (previous == nullptr && deferred != nullptr && deferred->is_pending) {
+    std::swap(work.images, *std::exchange(*deferred, {}).images);
+  } else {
     work.images[0].prepare(left, reductions, execution_);
     work.images[1].prepare(right, reductions, execution_);
   }
@@ -289,7 +287,8 @@ void ReducedMatcher::match(const Photograph& left, const Photograph& right, cons
       previous = nullptr;
       report.searched_share = 1;
       if (deferred != nullptr) {
-        *deferred = {.is_pending = true, .prepared = loan};
+        *deferred = {.is_pending = true, .images = lend_images()};
+        std::swap(work.images, *deferred->images);
         return;
       }
     }
@@ -330,6 +329,22 @@ void ReducedMatcher::match(const Photograph& left, const Photograph& right, cons
   }
 }
 
+std::shared_ptr<DeferredMatch::Images> ReducedMatcher::lend_images() const {
+  using Loan = ObjectPool<DeferredMatch::Images>::Loan;
+  const std::shared_ptr<Loan> loan(new Loan(deferred_images_.borrow()));
+  return {loan, &**loan};
+}
+
+std::size_t ReducedMatcher::deferred_bytes(const ResolvedMatchOptions& options,
+                                           scheduler::Extent image) {
+  std::size_t bytes = 0;
+  for (int r = 0; r <= search_reductions(options, image); ++r) {
+    bytes += 2 * static_cast<std::size_t>(image.columns) * static_cast<std::size_t>(image.rows);
+    image = coarser_extent(image);
+  }
+  return bytes;
+}
+
 std::size_t ReducedMatcher::working_bytes(const ResolvedMatchOptions& options,
                                           scheduler::Extent image) {
   // Of both images at all sizes: intensities with and without margins, codes and, at most, mirrored
@@ -352,16 +367,19 @@ std::size_t ReducedMatcher::working_bytes(const ResolvedMatchOptions& options,
 }
 
 std::size_t ReducedMatcher::level_bytes(const ResolvedMatchOptions& options,
-                                        scheduler::Extent image) {
+                                        scheduler::Extent image, std::size_t memory_bytes) {
   const int reductions = search_reductions(options, image);
   for (int r = 0; r < reductions; ++r) {
     image = coarser_extent(image);
   }
   return coarse_level_bytes(options.parameters, image,
-                            (options.disparities.count() >> reductions) + 2);
+                            (options.disparities.count() >> reductions) + 2, memory_bytes);
 }
 
 void ReducedMatcher::add_memory_use(MemoryUse& use) const {
+  deferred_images_.for_each_idle([&use](const DeferredMatch::Images& images) {
+    use.add("prepared images", images[0].held_bytes() + images[1].held_bytes());
+  });
   works_.for_each_idle([&use](const Work& work) {
     std::size_t images = work.search_edges.held_bytes() + work.window_edges.held_bytes();
     for (const ReducedImages& of_side : work.images) {

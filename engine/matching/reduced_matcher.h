@@ -66,12 +66,16 @@ class ReducedMatcher {
   void add_memory_use(MemoryUse& use) const;
   /// Memory of match() but for strips and the outputs: about.
   static std::size_t working_bytes(const ResolvedMatchOptions& options, scheduler::Extent image);
-  /// Of this, the levels of one map's search; PreviousMaps have some for each map.
-  static std::size_t level_bytes(const ResolvedMatchOptions& options, scheduler::Extent image);
+  /// Of this, the levels of one map's search; PreviousMaps have some for each map, without bands.
+  /// memory_bytes: see level_bands().
+  static std::size_t level_bytes(const ResolvedMatchOptions& options, scheduler::Extent image,
+                                 std::size_t memory_bytes = kDefaultLevelBytes);
+  /// Of a DeferredMatch.
+  static std::size_t deferred_bytes(const ResolvedMatchOptions& options, scheduler::Extent image);
 
  private:
   struct Work {
-    std::array<ReducedImages, 2> images;
+    DeferredMatch::Images images;
     std::vector<std::array<CostImage, 2>> costs;  ///< [reductions][side]
     EdgeWeightLevels search_edges;
     EdgeWeightLevels window_edges;
@@ -83,6 +87,7 @@ class ReducedMatcher {
     RefinementWork refinement;
   };
 
+  [[nodiscard]] std::shared_ptr<DeferredMatch::Images> lend_images() const;
   void prepare_costs(int reductions, Work& work) const;
   /// Winners at half size. `tiles`: the only ones to write; null: all. search: of the last
   /// call for this side, if there are `tiles`.
@@ -97,6 +102,7 @@ class ReducedMatcher {
   const ResolvedMatchOptions& options_;
   Execution& execution_;
   mutable ObjectPool<Work> works_;
+  mutable ObjectPool<DeferredMatch::Images> deferred_images_;
 };
 
 }  // namespace vantage

@@ -261,13 +261,15 @@ MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const 
           .kept = task.previous != nullptr ? &task.previous->of(task.side).refinement : nullptr};
 }
 
-/// Throws Error where a match cannot succeed.
-void StereoMatcher::require_memory(const Photograph& image) const {
+/// Throws Error where a match cannot succeed. keeps_costs: for the pair after it.
+void StereoMatcher::require_memory(const Photograph& image, bool keeps_costs) const {
   const std::string obstacle = memory_obstacle(
       in_force_,
       {.image = {image.width(), image.height()},
        .channels = image.channels(),
-       .level_bytes = execution_.options().level_memory_bytes.value_or(kDefaultLevelBytes)},
+       .level_bytes = keeps_costs
+                          ? kWithoutBands
+                          : execution_.options().level_memory_bytes.value_or(kDefaultLevelBytes)},
       execution_.machine().memory_bytes);
   if (!obstacle.empty()) {
     throw Error(obstacle);
@@ -306,7 +308,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   }
   StageClock clock(times);
   clock.start("prepare");
-  require_memory(left);
+  require_memory(left, request.previous != nullptr);
   if (search_reductions(in_force_, {left.width(), left.height()}) > 0) {
     if (uses_prior) {
       throw UsageError("there is a prior, expected none with a reduced search-size");

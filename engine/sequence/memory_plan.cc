@@ -69,6 +69,13 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
   if (options.saves_posterior()) {
     bytes += 2 * pixels * sizeof(float);
   }
+  if (options.temporal.reuse != Reuse::kNone) {
+    const ResolvedMatchOptions match = options.match.in_force();
+    const scheduler::Extent extent{shape.source.width_px, shape.source.height_px};
+    if (search_reductions(match, extent) > 0) {
+      bytes += ReducedMatcher::deferred_bytes(match, extent);
+    }
+  }
   if (options.saves_cyclopean()) {
     bytes += pixels * (sizeof(float) + 1);
   }
@@ -186,13 +193,13 @@ std::size_t reuse_bytes(const SequenceOptions& options, const PairShape& shape) 
   constexpr std::size_t kMapBytes = 1 + 3 * sizeof(float);
   const ResolvedMatchOptions match = options.match.in_force();
   if (search_reductions(match, extent) > 0) {
-    return 2 *
-           ((kHalfSizeBytes + kMapBytes) * pixels / 4 + ReducedMatcher::level_bytes(match, extent));
+    return 2 * ((kHalfSizeBytes + kMapBytes) * pixels / 4 +
+                ReducedMatcher::level_bytes(match, extent, kWithoutBands));
   }
   // Also the images of half the size, and check maps.
   const int candidates = candidate_count(match.disparities, match.parameters);
   return 2 * ((kHalfSizeBytes + 1) * pixels / 4 + (kMapBytes + sizeof(float)) * pixels +
-              coarse_level_bytes(match.parameters, extent, candidates));
+              coarse_level_bytes(match.parameters, extent, candidates, kWithoutBands));
 }
 
 /// State of the previous frame, and the comparison with it.

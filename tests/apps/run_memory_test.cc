@@ -135,6 +135,7 @@ TEST_F(SlowRunMemory, IsNotMoreThanAllowed) {
        "preview,views"},
       {"--frames", "0-15", "--method", "diffusion", "--iterations", "4", "--temporal-prior", "1",
        "--measure-flicker"},
+      {"--frames", "0-15", "--preset", "realtime", "--reuse", "frame"},
       {"--frames", "0-15", "--method", "ssd", "--calibration", rig_, "--save", "views", "--view",
        "0.5,0.1"}};
   SCOPED_TRACE(test::sample_name());

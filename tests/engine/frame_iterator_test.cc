@@ -77,18 +77,26 @@ class FrameIteratorTest : public testing::Test {
 };
 
 TEST_F(FrameIteratorTest, FramesDoNotDependOnTheExecution) {
-  options_.temporal.weight = 1;
-  const auto expected = maps(first(10), {.threads = 1}, 1);
-  ASSERT_EQ(expected.size(), 10U);
-  for (const scheduler::ExecutorKind kind :
-       {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp,
-        scheduler::ExecutorKind::kSerial}) {
-    EXPECT_EQ(maps(first(10), {.threads = 3, .executor = kind}, 4), expected);
+  for (const bool reuses : {false, true}) {
+    if (reuses) {  // all of these frames moved
+      options_.match.method = MatchMethod::kBayes;
+      options_.match.parameters.window_px.reset();
+      options_.match.parameters.levels = 2;
+    }
+    options_.temporal.weight = reuses ? 0 : 1;
+    options_.temporal.reuse = reuses ? Reuse::kFrame : Reuse::kNone;
+    const auto expected = maps(first(10), {.threads = 1}, 1);
+    ASSERT_EQ(expected.size(), 10U);
+    for (const scheduler::ExecutorKind kind :
+         {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp,
+          scheduler::ExecutorKind::kSerial}) {
+      EXPECT_EQ(maps(first(10), {.threads = 3, .executor = kind}, 4), expected);
+    }
+    for (const auto& [frame, map] : maps({2, 3, 7})) {
+      EXPECT_EQ(map, expected.at(frame)) << frame;
+    }
+    EXPECT_THAT(maps({}), IsEmpty());
   }
-  for (const auto& [frame, map] : maps({2, 3, 7})) {
-    EXPECT_EQ(map, expected.at(frame)) << frame;
-  }
-  EXPECT_THAT(maps({}), IsEmpty());
 }
 
 TEST_F(FrameIteratorTest, NoMoreFramesAreComputedThanInFlight) {

@@ -274,6 +274,8 @@ TEST_P(FrameReuseTest, ResultsDoNotDependOnTheExecution) {
   EXPECT_TRUE(test::identical(maps_of({.threads = 3}), expected));
   EXPECT_TRUE(test::identical(maps_of({.threads = 2, .strip_width_px = 11, .band_height_px = 5}),
                               expected));
+  // Whose levels would be in bands without frames before.
+  EXPECT_TRUE(test::identical(maps_of({.threads = 2, .level_memory_bytes = 1}), expected));
 }
 
 TEST_P(FrameReuseTest, TheLeftMapAloneStaysToo) {

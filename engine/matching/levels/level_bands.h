@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "scheduler/chain_geometry.h"
@@ -12,6 +13,8 @@ namespace vantage {
 /// Costs of coarse levels that take more memory are made in bands, unless
 /// ExecutionOptions::level_memory_bytes says otherwise.
 inline constexpr std::size_t kDefaultLevelBytes = std::size_t{2} << 30;
+/// As memory_bytes: no level has bands.
+inline constexpr std::size_t kWithoutBands = std::numeric_limits<std::size_t>::max();
 
 /// The finest coarse levels of very large images keep the costs of a band of rows only. They are
 /// made again from the images when the level is searched. Results do not depend on it.
