@@ -6,7 +6,6 @@ import pytest
 from conftest import run_program, same, unrectified_pair
 
 import vantage
-import vantage.opencv
 
 RANGE = {"disparities": (0, 15)}
 
@@ -149,29 +148,3 @@ def test_points(scene, truth):
         vantage.reproject(truth, tilted(scene))
     with pytest.raises(vantage.Error, match="missing.yml"):
         vantage.Calibration.load("missing.yml")
-
-
-def test_interface_of_opencv(scene):
-    left, right = (cv2.imread(str(scene / f"{side}.png")) for side in ["left", "right"])
-    arguments = {"minDisparity": -3, "numDisparities": 16, "blockSize": 5, "P1": 8, "P2": 32}
-    ours = vantage.opencv.StereoVantage_create(**arguments)
-    theirs = cv2.StereoSGBM_create(**arguments)
-    fixed = ours.compute(left, right)
-    reference = theirs.compute(left, right)
-    assert fixed.dtype == reference.dtype and fixed.shape == reference.shape
-    unknown = (-3 - 1) * 16
-    assert unknown in fixed and unknown in reference
-    both = (fixed != unknown) & (reference != unknown)
-    assert np.median(np.abs(fixed[both].astype(int) - reference[both])) <= 8
-    map_px = vantage.Matcher(disparities=(-3, 12), fill="none").compute(left, right, bgr=True)
-    known = np.isfinite(map_px.disparity)
-    assert np.array_equal(known, fixed != unknown)
-    assert np.allclose(fixed[known] / 16, map_px.disparity[known], atol=1 / 32)
-    into = np.empty_like(fixed)
-    assert ours.compute(left, right, into) is into and np.array_equal(into, fixed)
-    ours.setMinDisparity(0)
-    ours.setNumDisparities(32)
-    assert (ours.getMinDisparity(), ours.getNumDisparities()) == (0, 32)
-    assert ours.compute(left, right).min() == -16
-    with pytest.raises(ValueError, match="numDisparities is 0"):
-        ours.setNumDisparities(0)
