@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -15,6 +16,10 @@ namespace py = pybind11;
 
 py::array to_array(const py::object& object, const std::string& name) {
   if (py::isinstance<py::array>(object)) {
+    // Its mask would be lost without a word.
+    if (py::isinstance(object, py::module_::import("numpy").attr("ma").attr("MaskedArray"))) {
+      throw UsageError(name + ": the array is masked, expected one without a mask");
+    }
     return py::reinterpret_borrow<py::array>(object);
   }
   if (!py::hasattr(object, "__array_interface__") && !py::hasattr(object, "__array__")) {
@@ -48,6 +53,16 @@ PixelBuffer<T> buffer_of(const py::array& array, ChannelOrder order) {
           .pixel_bytes = array.strides(1),
           .channel_bytes = has_channels ? array.strides(2) : 0,
           .order = order};
+}
+
+/// A copy where a stride is 0 (of np.broadcast_to()), which a PixelBuffer cannot have.
+py::array without_repetition(const py::array& array) {
+  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
+    if (array.strides(i) == 0 && array.shape(i) > 1) {
+      return py::module_::import("numpy").attr("ascontiguousarray")(array);
+    }
+  }
+  return array;
 }
 
 /// Runs `work` and names the image in its errors.
@@ -101,7 +116,7 @@ py::array_t<T> owning_array(Image<T> image) {
 }  // namespace
 
 PixelArray::PixelArray(const py::object& object, ChannelOrder order, std::string name)
-    : array_(to_array(object, name)), name_(std::move(name)) {
+    : array_(without_repetition(to_array(object, name))), name_(std::move(name)) {
   if (array_.ndim() != 2 && array_.ndim() != 3) {
     throw UsageError(fmt::format("{}: the array has {} dimensions ({}), expected HxW or HxWx3",
                                  name_, array_.ndim(), shape_text(array_)));
@@ -116,6 +131,25 @@ PixelArray::PixelArray(const py::object& object, ChannelOrder order, std::string
     throw UsageError(
         fmt::format("{}: the array is of {}, expected uint8, uint16 or float32 (0 to 1)", name_,
                     std::string(py::str(array_.dtype()))));
+  }
+}
+
+void PixelArray::warn_of_range() const {
+  if (!std::holds_alternative<PixelBuffer<float>>(buffer_) || array_.size() == 0) {
+    return;
+  }
+  const auto min = array_.attr("min")().cast<float>();
+  const auto max = array_.attr("max")().cast<float>();
+  constexpr float kMargin = 0.25F;  // filters ring, highlights are above white
+  const bool is_finite = std::isfinite(min) && std::isfinite(max);  // others are refused
+  if (is_finite && (min < -kMargin || max > 1 + kMargin)) {
+    const std::string text = fmt::format(
+        "{}: the values of float32 are {:g} to {:g}, expected 0 to 1: divide them by that of white",
+        name_, min, max);
+    // 2: the line that called the function of the package.
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) != 0) {
+      throw py::error_already_set();
+    }
   }
 }
 

@@ -17,6 +17,9 @@ class PixelArray {
   /// A NumPy array, or what has one (PIL images): uint8, uint16 or float32, H×W or H×W×C. Throws
   /// TypeError for other objects, UsageError, which starts with `name`, for other arrays.
   PixelArray(const pybind11::object& object, ChannelOrder order, std::string name);
+  /// Warns where floats are far from 0 to 1, as those of 0 to 255 are. Of images that are only
+  /// written, which may hold any, it is not asked.
+  void warn_of_range() const;
 
   /// Reads the pixels in place where their layout allows. Throws Error, which starts with the name.
   [[nodiscard]] Photograph photograph() const;
@@ -41,7 +44,8 @@ pybind11::array_t<float> array_of(Image<float> image);
 /// True where the mask is set.
 pybind11::array_t<bool> array_of(ImageView<const std::uint8_t> mask);
 
-/// `object` as an array. Throws TypeError that starts with `name` for what has none.
+/// `object` as an array. Throws TypeError that starts with `name` for what has none, UsageError for
+/// a masked one.
 pybind11::array to_array(const pybind11::object& object, const std::string& name);
 /// "480x640x3".
 std::string shape_text(const pybind11::array& array);

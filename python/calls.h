@@ -39,6 +39,7 @@ std::optional<StereoCalibration> calibration_from(const pybind11::object& object
 
 /// Registers vantage.Error and vantage.UsageError.
 void bind_errors(pybind11::module_& module);
+void bind_calibration(pybind11::module_& module);
 void bind_files(pybind11::module_& module);
 void bind_match_result(pybind11::module_& module);
 void bind_matcher(pybind11::module_& module);

@@ -146,6 +146,12 @@ py::array_t<std::uint8_t> MatchResult::cyclopean_occlusion(const py::object& sel
   return array_over(require_cyclopean("cyclopean_occlusion").seen_by, self);
 }
 
+std::string MatchResult::text() const {
+  return fmt::format("<vantage.MatchResult: {}x{}, disparities {}:{}>", map().disparity_px.height(),
+                     map().disparity_px.width(), computed_.options.disparities.min,
+                     computed_.options.disparities.max);
+}
+
 py::array MatchResult::preview() const {
   const PreviewRange range =
       computed_.preview.value_or(preview_range_of(computed_.options.disparities));
@@ -291,6 +297,7 @@ void bind_match_result(py::module_& module) {
                              "bool: the same of the right map.")
       .def_property_readonly("disparities", &MatchResult::disparities,
                              "(MIN, MAX): the range that was searched, ends included.")
+      .def("__repr__", &MatchResult::text)
       .def("preview", &MatchResult::preview,
            "The map in false colours over the range searched: uint8, HxWx3, RGB.")
       .def("depth", with_options(&MatchResult::depth), py::arg("calibration") = py::none(),

@@ -73,6 +73,8 @@ class MatchResult {
   pybind11::array_t<float> posterior_variance(const pybind11::object& self);
   pybind11::array_t<float> cyclopean(const pybind11::object& self);
   pybind11::array_t<std::uint8_t> cyclopean_occlusion(const pybind11::object& self);
+  /// For people: its size and range.
+  [[nodiscard]] std::string text() const;
   /// In colours, as `vantage match --preview` shows it; in RGB order.
   pybind11::array preview() const;
   pybind11::array depth(const std::optional<StereoCalibration>& calibration,

@@ -30,6 +30,9 @@ MatchedImages ImageArguments::images() const {
   for (std::size_t i = 0; i < more.size(); ++i) {
     arrays.emplace_back(more[i], order, fmt::format("more[{}]", i));
   }
+  for (const PixelArray& array : arrays) {
+    array.warn_of_range();
+  }
   return {std::move(arrays), baselines};
 }
 

@@ -138,6 +138,7 @@ class MapArrays {
         side_(take_reference(keywords)),
         options_(metric_options(MetricOutput::kPoints, keywords)),
         image_(image, bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb, "image") {
+    image_.warn_of_range();
     if (!unmatched.is_none()) {
       unmatched_ = mask_from(unmatched, "unmatched");
     }

@@ -10,6 +10,7 @@ PYBIND11_MODULE(_vantage, module) {
   vantage::leave_opencv_to_host();
   module.attr("__version__") = VANTAGE_VERSION;
   vantage::python::bind_errors(module);
+  vantage::python::bind_calibration(module);
   vantage::python::bind_rectification(module);
   vantage::python::bind_point_clouds(module);
   vantage::python::bind_match_result(module);

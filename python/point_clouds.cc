@@ -115,6 +115,29 @@ FramedMesh mesh_from(const py::object& points, const py::object& colours,
   return mesh;
 }
 
+template <typename T>
+py::array_t<T> copied(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+template <typename T>
+std::vector<T> restored(const py::handle& object) {
+  const auto array = object.cast<py::array_t<T>>();
+  return {array.data(), array.data() + array.size()};
+}
+
+/// All of a cloud, for pickle.
+py::tuple state_of(const PointCloud& cloud, const std::string& frame) {
+  return py::make_tuple(copied(cloud.positions), copied(cloud.normals), copied(cloud.colours),
+                        copied(cloud.confidence), frame);
+}
+
+FramedCloud cloud_of_state(const py::tuple& state) {
+  return {{restored<float>(state[0]), restored<float>(state[1]), restored<std::uint8_t>(state[2]),
+           restored<float>(state[3])},
+          state[4].cast<std::string>()};
+}
+
 template <typename Shape>
 void write_ply(const py::object& path, const Shape& shape, const std::string& frame) {
   const std::string file = path_of(path);
@@ -134,6 +157,8 @@ void bind_point_clouds(py::module_& module) {
                           "camera; a Sequence with poses has points in\ntheir world.")
       .def(py::init(&cloud_from), py::arg("points"), py::arg("colours"),
            py::arg("confidence") = py::none())
+      .def(py::pickle([](const FramedCloud& self) { return state_of(self.cloud, self.frame); },
+                      [](const py::tuple& state) { return cloud_of_state(state); }))
       .def("__len__", [](const FramedCloud& self) { return self.cloud.size(); })
       .def("__repr__",
            [](const FramedCloud& self) {
@@ -164,6 +189,16 @@ void bind_point_clouds(py::module_& module) {
       "be written.")
       .def(py::init(&mesh_from), py::arg("points"), py::arg("colours"), py::arg("triangles"),
            py::arg("confidence") = py::none())
+      .def(py::pickle(
+          [](const FramedMesh& self) {
+            return py::make_tuple(state_of(self.mesh.vertices, self.frame),
+                                  copied(self.mesh.triangles));
+          },
+          [](const py::tuple& state) {
+            FramedCloud vertices = cloud_of_state(state[0].cast<py::tuple>());
+            return FramedMesh{{std::move(vertices.cloud), restored<std::int32_t>(state[1])},
+                              std::move(vertices.frame)};
+          }))
       .def("__repr__",
            [](const FramedMesh& self) {
              return fmt::format("<vantage.Mesh: {} points, {} triangles>",

@@ -86,6 +86,8 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
   const ChannelOrder order = bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb;
   const PixelArray left_pixels(left, order, "left");
   const PixelArray right_pixels(right, order, "right");
+  left_pixels.warn_of_range();
+  right_pixels.warn_of_range();
   PairWithMaps pair;
   if (!left_map.is_none()) {
     pair.maps.left.disparity_px = map_from(left_map, "disparity");

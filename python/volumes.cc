@@ -104,6 +104,10 @@ py::tuple Matcher::volume(const ImageArguments& arguments, const py::dict& keywo
   std::size_t max_bytes = default_max_bytes(*setup_.execution);
   py::dict options = keywords.attr("copy")();
   if (const py::object given = options.attr("pop")("max_bytes", py::none()); !given.is_none()) {
+    if (!py::isinstance<py::int_>(given) || given < py::int_(0)) {
+      throw UsageError(fmt::format("max_bytes is {}, expected a whole number of at least 0",
+                                   std::string(py::repr(given))));
+    }
     max_bytes = given.cast<std::size_t>();
   }
   apps::VolumeOutput output;

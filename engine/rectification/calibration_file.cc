@@ -314,7 +314,13 @@ StereoCalibration read_stereo_calibration(const std::filesystem::path& path,
 
 StereoCalibration calibration_of_depth_matrix(const Eigen::Matrix4d& q) {
   const double per_baseline = q(3, 2);
-  if (q(0, 0) != 1 || !(q(1, 1) > 0) || !(q(2, 3) > 0) || !(per_baseline > 0)) {
+  Eigen::Matrix4d rest = q;
+  for (const auto& [row, column] :
+       {std::pair{0, 0}, {0, 3}, {1, 1}, {1, 3}, {2, 3}, {3, 2}, {3, 3}}) {
+    rest(row, column) = 0;
+  }
+  if (q(0, 0) != 1 || !(q(1, 1) > 0) || !(q(2, 3) > 0) || !(per_baseline > 0) ||
+      !(rest.array() == 0).all()) {
     throw Error(
         "Q is not that of cameras side by side, expected rows (1 0 0 -cx), (0 1 0 -cy), (0 0 0 f), "
         "(0 0 1/B doffs/B)");

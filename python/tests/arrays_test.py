@@ -2,6 +2,7 @@
 
 import ctypes
 import mmap
+import warnings
 
 import numpy as np
 import pytest
@@ -53,6 +54,13 @@ def test_layouts(pair, kind):
         assert same(disparity(image, right), expected), name
     for name, image in layouts(right):
         assert same(disparity(left, image), expected), name
+
+
+def test_repeated_values(pair):
+    """Distances of 0 in memory, as np.broadcast_to() makes them."""
+    for image in [pair[0][..., 1:2], pair[0][:1], pair[0][:, 5:6], pair[0][:1, :1, :1]]:
+        repeated = np.broadcast_to(image, pair[0].shape)
+        assert same(disparity(repeated, pair[1]), disparity(repeated.copy(), pair[1]))
 
 
 def test_bgr(pair):
@@ -107,6 +115,7 @@ def test_results_outlive_what_they_come_from(pair):
     (lambda left: left[..., :2], ValueError, "left: the image has 2 channels, expected 1"),
     (lambda left: left[:0], ValueError, "left: the image has 160x0 pixels"),
     (lambda left: left[:-1], vantage.Error, "160x119"),
+    (lambda left: np.ma.masked_greater(left, 200), ValueError, "left: the array is masked"),
     (lambda left: "left.png", TypeError, "left is of type str, expected a NumPy array"),
     (lambda left: None, TypeError, "left is of type NoneType"),
 ])
@@ -122,6 +131,24 @@ def test_floats_that_are_not_finite(pair, value):
     left[7, 5, 1] = value
     with pytest.raises(ValueError, match=rf"left: the image is {value} at pixel \(5, 7\)"):
         MATCHER.compute(left, pair[1])
+
+
+@pytest.mark.parametrize("change, found", [
+    (lambda image: image * np.float32(255), "0 to 255"), (lambda image: image - 0.5, "-0.5 to 0.5"),
+])
+def test_floats_of_another_range(pair, change, found):
+    images = [image.astype(np.float32) / 255 for image in pair]
+    images[0][0, :2] = [0], [1]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        MATCHER.compute(images[0] * np.float32(1.1), images[1])  # filters ring
+    images[0] = change(images[0])
+    message = f"left: the values of float32 are {found}, expected 0 to 1"
+    for call in [MATCHER.compute, vantage.rectify,
+                 lambda *both: vantage.synthesize(*both, disparities=(0, 15))]:
+        with pytest.warns(UserWarning, match=message) as caught:
+            call(*images)
+        assert len(caught) == 1 and caught[0].filename in [__file__, vantage.__file__]
 
 
 def test_files(tmp_path, pair):

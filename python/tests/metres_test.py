@@ -113,8 +113,51 @@ def test_what_has_no_scale(result, calibration):
                             metres_per_unit=0)
     with pytest.raises(ValueError, match="image_size and principal_point_px are not given"):
         vantage.Calibration.from_focal_length(700, 0.1)
-    with pytest.raises(vantage.Error, match="Q is not that of cameras side by side"):
-        vantage.reproject(result.disparity, np.eye(4))
+
+
+def test_bad_matrices(calibration, truth):
+    for row, column, value, message in [
+            (0, 1, np.nan, "Q has values that are not finite"), (3, 2, np.inf, "not finite"),
+            (2, 0, 3, "Q is not that of cameras side by side"), (3, 2, 0, "Q is not that of"),
+            (2, 3, -5, "Q is not that of")]:
+        matrix = calibration.Q
+        matrix[row, column] = value
+        with pytest.raises(ValueError, match=message):
+            vantage.reproject(truth, matrix)
+    for matrix in [np.zeros((4, 4)), np.eye(4), np.full((4, 4), np.nan), np.eye(3), [[1, 2], [3]]]:
+        with pytest.raises(ValueError, match="^Q "):
+            vantage.reproject(truth, matrix)
+
+
+@pytest.mark.parametrize("given, message", [
+    ({"K1": np.full((3, 3), np.nan)}, "left camera's matrix has values that are not finite"),
+    ({"K2": np.zeros((3, 3))}, "right camera's fx is 0"),
+    ({"K1": np.eye(4)}, "K1 has the shape 4x4, expected 3x3"),
+    ({"K1": "K"}, "K1 is of type str, expected 3x3 numbers"),
+    ({"D1": [np.nan] * 4}, "left camera has the distortion coefficient nan"),
+    ({"D2": np.zeros((2, 4))}, "D2 has the shape 2x4, expected a row of numbers"),
+    ({"R": np.full((3, 3), np.nan)}, "R or T has values that are not finite"),
+    ({"T": [0, 0, 0]}, r"baseline \(length of T\) is 0"),
+    ({"T": [1, 0]}, "T has 2 numbers, expected 3"),
+    ({"T": [-1, np.inf, 0]}, "R or T has values that are not finite"),
+    ({"image_size": (1.5, 3)}, r"image_size is \(1.5, 3\), expected"),
+])
+def test_bad_cameras(calibration, given, message):
+    cameras = {"K1": calibration.K1, "T": [-0.1, 0, 0], **given}
+    with pytest.raises(ValueError, match=message) as problem:
+        vantage.Calibration(**cameras)
+    assert "\n" not in str(problem.value)
+
+
+def test_cameras_as_opencv_has_them(calibration):
+    """D of calibrateCamera() is 1x5, T of stereoCalibrate() 3x1."""
+    distortion = np.array([[-0.1, 0.02, 0.001, 0.002, 0.003]])
+    cameras = [vantage.Calibration(calibration.K1, D, T=T)
+               for D, T in [(distortion, np.array([[-0.1], [0], [0]])),
+                            (distortion.T, np.array([[-0.1, 0, 0]])),
+                            (distortion[0].tolist(), (-0.1, 0, 0))]]
+    for one in cameras:
+        assert one.D1 == distortion[0].tolist() and one.T.tolist() == [-0.1, 0, 0]
 
 
 @pytest.mark.parametrize("call, message", [

@@ -43,7 +43,7 @@ class Matcher:
     rectified pair; rectified_pixels=True brings maps to the rectified images, for synthesize() and
     for depth(), cloud() and mesh() of results, which then need no calibration.
 
-    Several threads may use one matcher at a time.
+    Several threads may use one matcher at a time. Processes get it by its options (pickle).
     """
 
     def __init__(self, preset="balanced", disparities="auto", *, unrectified=None,
@@ -51,9 +51,21 @@ class Matcher:
         # A method is another choice than a preset.
         if preset == "balanced" and {"method", "aggregate", "disparities_y"} & options.keys():
             preset = None
-        self._native = _vantage.Matcher(
-            _calibration_of(unrectified), rectified_pixels,
-            {"preset": preset, "disparities": disparities, **options})
+        self._set(_calibration_of(unrectified), bool(rectified_pixels),
+                  {"preset": preset, "disparities": disparities, **options})
+
+    def _set(self, *given):
+        self._given = given
+        unrectified, rectified_pixels, options = given
+        # Which takes options out.
+        self._native = _vantage.Matcher(unrectified, rectified_pixels, dict(options))
+
+    # What a matcher was made of makes it in another process.
+    def __getstate__(self):
+        return self._given
+
+    def __setstate__(self, given):
+        self._set(*given)
 
     def compute(self, left, right, *, more=(), baselines=(), bgr=False, right_disparity=False,
                 confidence=False, posterior=False):
@@ -70,8 +82,9 @@ class Matcher:
         wanted. Until then the result needs the arrays as they are: it refuses arrays that have
         changed. Raises UsageError for other arrays, Error for images that cannot be matched.
         """
-        return self._native.compute(left, right, list(more), [float(b) for b in baselines], bgr,
-                                    right_disparity, confidence, posterior)
+        return self._native.compute(
+            left, right, list(more), [float(b) for b in baselines], bool(bgr),
+            bool(right_disparity), bool(confidence), bool(posterior))
 
     def volume(self, left, right, *, kind="aggregated", level=0, rows=None, max_bytes=None,
                more=(), baselines=(), bgr=False):
@@ -85,7 +98,7 @@ class Matcher:
         options = {"volume_kind": kind, "volume_level": level, "volume_rows": rows,
                    "max_bytes": max_bytes}
         return Volume(*self._native.volume(left, right, list(more),
-                                           [float(b) for b in baselines], bgr, options))
+                                           [float(b) for b in baselines], bool(bgr), options))
 
     __call__ = compute
 
@@ -158,7 +171,7 @@ def rectify(left, right, calibration=None, *, kept_outline=0.0, bgr=False, **opt
     options: threads. Returns RectifiedImages. Raises Error where the images show too little.
     """
     return RectifiedImages(*_vantage.rectify(
-        left, right, _calibration_of(calibration), kept_outline, bgr, options))
+        left, right, _calibration_of(calibration), kept_outline, bool(bgr), options))
 
 
 def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, calibration=None,
@@ -166,7 +179,8 @@ def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, 
     """New views of a pair, as `vantage synth` makes them: an array like `left`, or a list of them.
 
     view: a position in baselines (0: left camera, 1: right camera) or (x, y), or a camera as a dict
-    of K, R and t, which needs a calibration; a list of these gives a list. Default 0.5.
+    of K, R and t, which needs a calibration; a list of these, or an array of positions, gives a
+    list. Default 0.5.
     options: those of `vantage synth` instead of view (sweep, orbit, pose, path), and how views are
     made (holes, look_at, …); without maps also those of Matcher.
     disparity, right_disparity: both maps of the rectified pair; None: they are computed.
@@ -174,6 +188,9 @@ def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, 
     """
     if view is None and not {"sweep", "orbit", "pose", "path"} & options.keys():
         view = 0.5
+    if isinstance(view, (_np.ndarray, _np.generic)):  # np.linspace(0, 1, 5), or rows of X, Y
+        view = [tuple(one) if isinstance(one, list) else one
+                for one in view.tolist()] if view.ndim > 0 else view.item()
     single = view is not None and not isinstance(view, list)
     if view is not None:
         views = [view] if single else view
@@ -184,7 +201,8 @@ def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, 
                 ",".join(str(float(part)) for part in one) if isinstance(one, tuple) else one
                 for one in views]
     arrays = _vantage.synthesize(
-        left, right, disparity, right_disparity, _calibration_of(calibration), bgr, options)
+        left, right, disparity, right_disparity, _calibration_of(calibration), bool(bgr),
+        options)
     return arrays[0] if single else arrays
 
 
@@ -196,14 +214,11 @@ def reproject(disparity, calibration, *, reference="left", **options):
 
     disparity: float32 or float64, HxW. calibration: Calibration of rectified images (or the path of
     one), or OpenCV's 4x4 matrix Q. reference: "left" or "right", the image of the map. options:
-    threads. Raises UsageError for other arrays, Error for other calibrations. MatchResult.cloud()
-    makes points in metres with their colours.
+    threads. Raises UsageError for other arrays and matrices, Error for other calibrations.
+    MatchResult.cloud() makes points in metres with their colours.
     """
     if isinstance(calibration, (_np.ndarray, list, tuple)):
-        q = _np.asarray(calibration, dtype=float)
-        if q.shape != (4, 4):
-            raise UsageError(f"the matrix Q has shape {q.shape}, expected (4, 4)")
-        calibration = Calibration.from_depth_matrix(q)
+        calibration = Calibration.from_depth_matrix(calibration)
     return _vantage.reproject(disparity, _calibration_of(calibration),
                               {"reference": reference, **options})
 
@@ -242,7 +257,7 @@ def cloud(disparity, image, calibration=None, *, unmatched=None, confidence=None
     calibration), and those of depth(). Raises Error where no point is left.
     """
     return _vantage.cloud(disparity, image, _calibration_of(calibration), unmatched, confidence,
-                          bgr, options)
+                          bool(bgr), options)
 
 
 def mesh(disparity, image, calibration=None, *, unmatched=None, confidence=None, bgr=False,
@@ -250,8 +265,8 @@ def mesh(disparity, image, calibration=None, *, unmatched=None, confidence=None,
     """The points as a surface of triangles, a Mesh, cut where the disparity jumps. Arguments as of
     cloud(). For a MatchResult use its mesh().
     """
-    return _vantage.mesh(disparity, image, _calibration_of(calibration), unmatched, confidence, bgr,
-                         options)
+    return _vantage.mesh(disparity, image, _calibration_of(calibration), unmatched, confidence,
+                         bool(bgr), options)
 
 
 class Frame:
@@ -355,6 +370,9 @@ class Sequence:
     def __len__(self):
         return len(self._frames)
 
+    def __repr__(self):
+        return f"<vantage.Sequence: {len(self)} frames>"
+
     def __iter__(self):
         loop = self._native.loop(list(self._frames))
         _loops.add(loop)
@@ -376,12 +394,12 @@ def _end_loops():
 
 def read_image(path, *, bgr=False):
     """Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR or PFM: uint8, uint16 or float32."""
-    return _vantage.read_image(path, bgr)
+    return _vantage.read_image(path, bool(bgr))
 
 
 def write_image(path, image, *, bgr=False):
     """Writes an image; the extension is the format."""
-    _vantage.write_image(path, image, bgr)
+    _vantage.write_image(path, image, bool(bgr))
 
 
 def read_disparity(path, scale=0.0):

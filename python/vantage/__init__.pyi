@@ -13,6 +13,7 @@ _Rig = Calibration | _Path | None
 _Map = NDArray[np.float32] | NDArray[np.float64]
 _Mask = NDArray[np.bool_] | NDArray[np.uint8]
 _Preset = Literal["realtime", "fast", "balanced", "quality"] | None
+_Numbers = NDArray[Any] | _Sequence[Any]
 _Position = float | tuple[float, float] | Mapping[str, Any]
 
 class Error(RuntimeError): ...
@@ -108,9 +109,8 @@ class Mesh:
 
 class Calibration:
     def __init__(
-        self, K1: NDArray[np.float64], D1: _Sequence[float] = ...,
-        K2: NDArray[np.float64] | None = ..., D2: _Sequence[float] = ...,
-        R: NDArray[np.float64] = ..., T: NDArray[np.float64] | None = ..., *,
+        self, K1: _Numbers, D1: _Numbers | None = ..., K2: _Numbers | None = ...,
+        D2: _Numbers | None = ..., R: _Numbers | None = ..., T: _Numbers | None = ..., *,
         image_size: tuple[int, int] | None = ..., rectified: bool = ...,
         metres_per_unit: float | None = ...
     ) -> None: ...
@@ -125,7 +125,7 @@ class Calibration:
         doffs_px: float = ..., principal_point_px: tuple[float, float] | None = ...
     ) -> Calibration: ...
     @staticmethod
-    def from_depth_matrix(Q: NDArray[np.float64]) -> Calibration: ...
+    def from_depth_matrix(Q: _Numbers) -> Calibration: ...
     @property
     def K1(self) -> NDArray[np.float64]: ...
     @property
@@ -165,12 +165,12 @@ def rectify(
     kept_outline: float = ..., bgr: bool = ..., **options: Any
 ) -> RectifiedImages: ...
 def synthesize(
-    left: _Image, right: _Image, view: _Position | list[_Position] | None = ..., *,
+    left: _Image, right: _Image, view: _Position | list[_Position] | NDArray[Any] | None = ..., *,
     disparity: NDArray[np.float32] | None = ..., right_disparity: NDArray[np.float32] | None = ...,
     calibration: _Rig = ..., bgr: bool = ..., **options: Any
 ) -> Any: ...
 def reproject(
-    disparity: _Map, calibration: Calibration | _Path | NDArray[np.float64] | list[Any], *,
+    disparity: _Map, calibration: Calibration | _Path | _Numbers, *,
     reference: Literal["left", "right"] = ..., **options: Any
 ) -> NDArray[np.float32]: ...
 def depth(disparity: _Map, calibration: _Rig = ..., **options: Any) -> NDArray[np.float32]: ...
