@@ -22,6 +22,7 @@
 #include "engine/io/frame_source.h"
 #include "engine/io/photograph_io.h"
 #include "engine/pose_estimation/camera_estimation.h"
+#include "engine/rectification/kitti_cameras.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/view_geometry/colmap_writer.h"
 #include "engine/view_geometry/intrinsics_file.h"
@@ -80,10 +81,12 @@ void add_scene_poses_settings(Settings& settings, ScenePosesJob& job) {
   settings.input_path("images", job.images, "SOURCE",
                       "Photographs of one lens and one size: a folder, a pattern "
                       "(images/%03d.png) or a glob");
-  settings.input_path("intrinsics", job.intrinsics, "FILE",
-                      "Camera: OpenCV's YAML or XML, COLMAP's cameras.txt, KITTI's calib.txt, or a "
-                      "text fx fy cx cy [k1 k2 p1 p2 [k3]]; none: focal length and radial "
-                      "distortion are estimated");
+  settings.input_path(
+      "intrinsics", job.intrinsics, "FILE",
+      "Camera: OpenCV's YAML or XML, COLMAP's cameras.txt, KITTI's calib.txt (P2 for "
+      "images in image_2, else P0), or a text fx fy cx cy [k1 k2 p1 p2 [k3]]; none: focal length "
+      "and radial "
+      "distortion are estimated");
   Setting& output =
       settings.path("output", job.output, "MODEL", "Folder of the poses, a COLMAP model as text");
   output.short_name = 'o';
@@ -301,7 +304,7 @@ int command_scene_poses(const Arguments& arguments) {
   }
   ImageSize size_of_lens;
   if (!job.intrinsics.empty()) {
-    const SizedCamera camera = read_intrinsics(job.intrinsics);
+    const SizedCamera camera = read_intrinsics(job.intrinsics, kitti_camera_of(files).value_or(0));
     job.estimation.lens = camera.camera;
     size_of_lens = camera.size;
   }

@@ -104,7 +104,8 @@ void add_input_limit_settings(Settings& settings, ExecutionOptions& execution) {
   add_pixel_limit_setting(settings);
   Setting& memory = add_size_setting(settings, "memory", memory_limit,
                                      "Memory limit for images and results, such as 800M or 4G; the "
-                                     "command fails beyond it; auto: no limit");
+                                     "command fails beyond it. 8 MiB per processor are free, for "
+                                     "stacks: small inputs fit any limit. auto: no limit");
   const auto set_field = std::move(memory.set);
   memory.set = [&execution, set_field](const SettingValue& value) {
     set_field(value);

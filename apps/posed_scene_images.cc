@@ -12,6 +12,7 @@
 #include "engine/io/file_bytes.h"
 #include "engine/io/frame_source.h"
 #include "engine/io/text_lines.h"
+#include "engine/rectification/kitti_cameras.h"
 #include "engine/view_geometry/colmap_model.h"
 #include "engine/view_geometry/intrinsics_file.h"
 #include "engine/view_geometry/trajectory_file.h"
@@ -161,7 +162,7 @@ std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::str
                     poses.string()));
   }
   const fs::path& camera_file = intrinsics.empty() ? poses : intrinsics;
-  const SizedCamera camera = read_intrinsics(camera_file);
+  const SizedCamera camera = read_intrinsics(camera_file, kitti_camera_of(files).value_or(0));
   if (is_opencv) {
     return in_order(files, camera, parse_opencv_poses(text, poses.string()), poses);
   }

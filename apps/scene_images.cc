@@ -91,9 +91,10 @@ void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
       "poses", input.poses, "PATH",
       "Poses of hand-held cameras: a folder with a COLMAP model as text, whose images are in "
       "--images; a TUM or KITTI trajectory; OpenCV's YAML or XML with extrinsic_parameters");
-  settings.input_path("intrinsics", input.intrinsics, "FILE",
-                      "Camera of a trajectory: OpenCV's YAML or XML, COLMAP's cameras.txt, KITTI's "
-                      "calib.txt, or a text fx fy cx cy [k1 k2 p1 p2 [k3]]");
+  settings.input_path(
+      "intrinsics", input.intrinsics, "FILE",
+      "Camera of a trajectory: OpenCV's YAML or XML, COLMAP's cameras.txt, KITTI's "
+      "calib.txt (P2 for images in image_2, else P0), or a text fx fy cx cy [k1 k2 p1 p2 [k3]]");
 }
 
 std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings,

@@ -17,5 +17,7 @@ enum class KittiCameras {
 /// colour. Empty: no path has such a folder, or they do not agree. Reads no files. Thread rule: may
 /// be called concurrently.
 std::optional<KittiCameras> kitti_cameras_of(std::span<const std::filesystem::path> images);
+/// The same for images of one camera: its number, 0 to 3 (colored_0 is 2).
+std::optional<int> kitti_camera_of(std::span<const std::filesystem::path> images);
 
 }  // namespace vantage

@@ -112,7 +112,7 @@ std::vector<double> numbers_alone(std::string_view text, const std::string& file
 }
 
 /// From a file without names.
-std::optional<SizedCamera> camera_of_numbers(const std::vector<double>& numbers) {
+std::optional<SizedCamera> camera_of_numbers(const std::vector<double>& numbers, int kitti_camera) {
   SizedCamera sized;
   Camera& camera = sized.camera;
   if (numbers.size() == 4 || numbers.size() == 8 || numbers.size() == 9) {
@@ -121,7 +121,11 @@ std::optional<SizedCamera> camera_of_numbers(const std::vector<double>& numbers)
     return sized;
   }
   if (!numbers.empty() && numbers.size() % 12 == 0) {
-    camera.matrix = matrix_of_projection(numbers);
+    // Two lines are one of the pairs 0, 1 and 2, 3.
+    const std::size_t lines = numbers.size() / 12;
+    const auto line = static_cast<std::size_t>(lines == 2 ? kitti_camera % 2 : kitti_camera);
+    const auto first = numbers.begin() + static_cast<std::ptrdiff_t>(line < lines ? 12 * line : 0);
+    camera.matrix = matrix_of_projection({first, first + 12});
     return sized;
   }
   return std::nullopt;
@@ -143,15 +147,29 @@ SizedCamera camera_of_colmap(std::string_view text, const std::string& file) {
   return cameras.begin()->second;
 }
 
-SizedCamera camera_of_entries(const CalibrationEntries& entries, const std::string& file) {
+/// A projection P of a file of KITTI's; null for other files.
+const CalibrationEntry* projection_of(const CalibrationEntries& entries, int kitti_camera) {
+  for (const int camera : {kitti_camera, 0, 1, 2, 3}) {
+    const std::string name = fmt::format("P{}", camera);
+    const std::string raw_name = fmt::format("P_rect_0{}", camera);
+    if (const CalibrationEntry* projection = find(entries, {name, raw_name})) {
+      return projection;
+    }
+  }
+  return nullptr;
+}
+
+SizedCamera camera_of_entries(const CalibrationEntries& entries, const std::string& file,
+                              int kitti_camera) {
   refuse_fisheyes(entries, file);
   SizedCamera sized;
-  if (const CalibrationEntry* projection = find(entries, {"P0", "P_rect_00"})) {
-    sized.camera.matrix = matrix_of_projection(values_of(*projection, "P0", 12, file));
-    return sized;
-  }
   const CalibrationEntry* matrix = find(entries, {"camera_matrix", "Camera_Matrix", "cameraMatrix",
                                                   "K", "K1", "M1", "cameraMatrix1"});
+  const CalibrationEntry* projection = projection_of(entries, kitti_camera);
+  if (projection != nullptr && matrix == nullptr) {
+    sized.camera.matrix = matrix_of_projection(values_of(*projection, "P", 12, file));
+    return sized;
+  }
   if (matrix == nullptr) {
     throw Error(
         fmt::format("{}: holds no camera_matrix (or K), expected OpenCV's YAML or XML, "
@@ -170,16 +188,16 @@ SizedCamera camera_of_entries(const CalibrationEntries& entries, const std::stri
 
 }  // namespace
 
-SizedCamera parse_intrinsics(std::string_view text, const std::string& file) {
+SizedCamera parse_intrinsics(std::string_view text, const std::string& file, int kitti_camera) {
   SizedCamera sized;
   if (is_xml(text)) {
-    sized = camera_of_entries(xml_entries(text), file);
-  } else if (const auto camera = camera_of_numbers(numbers_alone(text, file))) {
+    sized = camera_of_entries(xml_entries(text), file, kitti_camera);
+  } else if (const auto camera = camera_of_numbers(numbers_alone(text, file), kitti_camera)) {
     sized = *camera;
   } else if (looks_like_colmap(text, file)) {
     sized = camera_of_colmap(text, file);
   } else {
-    sized = camera_of_entries(yaml_entries(text), file);
+    sized = camera_of_entries(yaml_entries(text), file, kitti_camera);
   }
   try {
     sized.camera.validate("camera");
@@ -189,10 +207,10 @@ SizedCamera parse_intrinsics(std::string_view text, const std::string& file) {
   return sized;
 }
 
-SizedCamera read_intrinsics(const std::filesystem::path& file) {
+SizedCamera read_intrinsics(const std::filesystem::path& file, int kitti_camera) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(file);
   return parse_intrinsics({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                          file.string());
+                          file.string(), kitti_camera);
 }
 
 bool has_opencv_poses(std::string_view text) {

@@ -21,6 +21,18 @@ TEST(KittiCamerasOf, NamesOfFoldersSayThem) {
   EXPECT_EQ(of({"image_0/image_2/x.png"}), KittiCameras::kColour) << "the innermost folder";
 }
 
+TEST(KittiCamerasOf, OneCamera) {
+  const auto camera = [](std::vector<std::filesystem::path> images) {
+    return kitti_camera_of(images);
+  };
+  EXPECT_EQ(camera({"image_2/0.png", "image_2/1.png"}), 2);
+  EXPECT_EQ(camera({"image_03/data/0.png"}), 3);
+  EXPECT_EQ(camera({"image_0/0.png", "list.txt"}), 0);
+  EXPECT_EQ(camera({"colored_1/0.png"}), 3);
+  EXPECT_FALSE(camera({"image_2/0.png", "image_3/0.png"})) << "they do not agree";
+  EXPECT_FALSE(camera({"photos/0.png"}));
+}
+
 TEST(KittiCamerasOf, OtherNamesSayNothing) {
   EXPECT_FALSE(of({}));
   EXPECT_FALSE(of({""}));

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -178,6 +179,33 @@ TEST(IntrinsicsFile, EveryFormat) {
                 .camera.matrix(1, 2),
             5);
   EXPECT_EQ(parse_intrinsics("7 0 6 0 0 7 5 0 0 0 1 0\n", "c").camera.matrix(0, 2), 6);
+}
+
+TEST(IntrinsicsFile, CameraOfKitti) {
+  // cx is the number of the camera.
+  const auto line = [](const char* name, int camera) {
+    return fmt::format("{} 7 0 {} 0 0 7 5 0 0 0 1 0\n", name, camera);
+  };
+  const auto cx = [](const std::string& text, int camera) {
+    return parse_intrinsics(text, "calib.txt", camera).camera.matrix(0, 2);
+  };
+  std::string named;
+  std::string raw;
+  std::string numbers;
+  for (int camera = 0; camera < 4; ++camera) {
+    named += line(fmt::format("P{}:", camera).c_str(), camera);
+    raw += line(fmt::format("P_rect_0{}:", camera).c_str(), camera);
+    numbers += line("", camera);
+  }
+  for (int camera = 0; camera < 4; ++camera) {
+    EXPECT_EQ(cx(named, camera), camera);
+    EXPECT_EQ(cx(raw, camera), camera);
+    EXPECT_EQ(cx(numbers, camera), camera);
+  }
+  const std::string colour = line("P2:", 2) + line("P3:", 3);
+  EXPECT_EQ(cx(colour, 3), 3);
+  EXPECT_EQ(cx(colour, 0), 2);
+  EXPECT_EQ(cx(line("", 2) + line("", 3), 3), 3);
 }
 
 TEST(IntrinsicsFile, SaysWhatIsWrong) {
