@@ -1,10 +1,13 @@
 // Images and maps in files.
+#include <fmt/format.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "engine/io/depth_io.h"
 #include "engine/io/preview.h"
@@ -59,8 +62,13 @@ py::array colours(const py::object& disparity, const py::object& limits) {
   if (limits.is_none()) {
     range = choose_preview_range(map.view());
   } else {
-    const auto given = limits.cast<std::pair<float, float>>();
-    range = {given.first, given.second};
+    try {
+      const auto given = limits.cast<std::pair<float, float>>();
+      range = {given.first, given.second};
+    } catch (const py::cast_error&) {
+      throw UsageError(
+          fmt::format("limits is {}, expected two numbers", std::string(py::repr(limits))));
+    }
   }
   return array_of({colour_preview(map.view(), range.min_px, range.max_px)}, ChannelOrder::kRgb);
 }

@@ -161,6 +161,9 @@ def test_files(tmp_path, pair):
         assert same(vantage.read_disparity(tmp_path / name), disparity_px)
     with pytest.raises(vantage.Error, match="missing.png"):
         vantage.read_image(tmp_path / "missing.png")
+    for limits in [3, (1, 2, 3), "ab"]:
+        with pytest.raises(ValueError, match="limits is .*, expected two numbers"):
+            vantage.colours(disparity_px, limits)
     with pytest.raises(ValueError, match="map.txt"):
         vantage.write_disparity(tmp_path / "map.txt", disparity_px)
     with pytest.raises(ValueError, match=r"disparity: the array has the shape 3, expected HxW"):

@@ -118,6 +118,10 @@ def test_options_are_checked():
     with pytest.raises(ValueError, match="unknown option 'report'"):
         vantage.Matcher(report="file.json")
     assert vantage.Matcher(fill="none").options["fill"] == "none"
+    for options in [{}, {"preset": "fast"}, {"method": "ssd"}, {"aggregate": "none"},
+                    {"disparities_y": (0, 1), "disparities": (0, 3)}]:
+        options = vantage.Matcher(**options).options
+        assert vantage.Matcher(**options).options == options
 
 
 def test_no_range(pair):

@@ -30,6 +30,9 @@ __all__ = [
 
 _loops = _weakref.WeakSet()
 
+# The values of these options that leave the choice to the preset.
+_WITHOUT_METHOD = {"method": "auto", "aggregate": "auto", "disparities_y": "none"}
+
 
 class Matcher:
     """Matches rectified pairs, as `vantage match` does.
@@ -49,7 +52,9 @@ class Matcher:
     def __init__(self, preset="balanced", disparities="auto", *, unrectified=None,
                  rectified_pixels=False, **options):
         # A method is another choice than a preset.
-        if preset == "balanced" and {"method", "aggregate", "disparities_y"} & options.keys():
+        if preset == "balanced" and any(
+                not (options.get(name) is None or str(options[name]) == value)
+                for name, value in _WITHOUT_METHOD.items()):
             preset = None
         self._set(_calibration_of(unrectified), bool(rectified_pixels),
                   {"preset": preset, "disparities": disparities, **options})
@@ -171,7 +176,7 @@ def rectify(left, right, calibration=None, *, kept_outline=0.0, bgr=False, **opt
     options: threads. Returns RectifiedImages. Raises Error where the images show too little.
     """
     return RectifiedImages(*_vantage.rectify(
-        left, right, _calibration_of(calibration), kept_outline, bool(bgr), options))
+        left, right, _calibration_of(calibration), float(kept_outline), bool(bgr), options))
 
 
 def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, calibration=None,
@@ -219,6 +224,8 @@ def reproject(disparity, calibration, *, reference="left", **options):
     """
     if isinstance(calibration, (_np.ndarray, list, tuple)):
         calibration = Calibration.from_depth_matrix(calibration)
+    elif calibration is None:
+        raise TypeError("calibration is None, expected a Calibration, its path or a matrix Q")
     return _vantage.reproject(disparity, _calibration_of(calibration),
                               {"reference": reference, **options})
 
@@ -407,7 +414,7 @@ def read_disparity(path, scale=0.0):
 
     scale divides the values of integer files; 0: 256 for 16-bit PNG.
     """
-    return _vantage.read_disparity(path, scale)
+    return _vantage.read_disparity(path, float(scale))
 
 
 def write_disparity(path, disparity):
@@ -424,11 +431,13 @@ def write_depth(path, depth):
 
 def write_cloud(path, cloud):
     """Writes a PointCloud as a binary PLY file."""
+    _require_type("cloud", cloud, PointCloud)
     _vantage.write_cloud(path, cloud)
 
 
 def write_mesh(path, mesh):
     """Writes a Mesh as a binary PLY file."""
+    _require_type("mesh", mesh, Mesh)
     _vantage.write_mesh(path, mesh)
 
 
@@ -438,6 +447,12 @@ def colours(disparity, limits=None):
     limits: disparities of the first and the last colour; default: from the map.
     """
     return _vantage.colours(disparity, limits)
+
+
+def _require_type(name, value, expected):
+    if not isinstance(value, expected):
+        raise TypeError(
+            f"{name} is of type {type(value).__name__}, expected a {expected.__name__}")
 
 
 def _calibration_of(calibration, images=()):
