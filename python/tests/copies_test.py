@@ -27,6 +27,16 @@ def test_matchers(pair):
         assert same(one(*pair).disparity, expected)
 
 
+def test_matchers_of_photographs_that_are_not_rectified():
+    left, right = unrectified_pair()
+    cameras = vantage.Calibration(np.diag([160.0, 160, 1]) + [[0, 0, 80], [0, 0, 60], [0, 0, 0]],
+                                  T=[-0.1, 0.002, 0])
+    matcher = vantage.Matcher("fast", (0, 31), unrectified=cameras, rectified_pixels=True)
+    expected = matcher(left, right).disparity
+    for one in copies(matcher):
+        assert same(one(left, right).disparity, expected)
+
+
 @pytest.mark.filterwarnings("error")
 def test_stereo_vantage(pair):
     stereo = vantage.opencv.StereoVantage_create(-2, 16, speckleWindowSize=200, preset="fast")
