@@ -66,7 +66,7 @@ TEST(CostSharing, IsForByteCostsOfOnePartnerAndImagesThatAreNotLarge) {
   input.partners = {CostPartner{.baseline_ratio = 2}};
   EXPECT_FALSE(shares_costs(parameters, input, {640, 480}, 64));
   parameters.cost = MatchCost::kSquared;
-  EXPECT_FALSE(can_share_costs(parameters));
+  EXPECT_FALSE(can_share_costs(parameters, {640, 480}, 64));
 }
 
 }  // namespace cost_sharing_test
