@@ -132,8 +132,10 @@ void add_baselines_setting(Settings& settings, std::vector<double>& baselines, s
 
 void check_baselines(const Settings& settings, const std::vector<double>& baselines,
                      std::size_t others) {
-  settings.refuse_idle({"cross-check", "cross-check-level"},
-                       "with several images: there is no second map to compare with");
+  settings.refuse_idle({"cross-check-level"},
+                       "with several images: they are checked against whole maps");
+  settings.refuse_idle({"search-size", "window-levels"},
+                       "with several images: all candidates are searched at full size");
   settings.refuse_idle({"tuning"}, "with several images: tuning is for pairs");
   if (baselines.size() != others) {
     throw UsageError(

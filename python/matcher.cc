@@ -49,7 +49,7 @@ Matcher::Matcher(const std::optional<StereoCalibration>& unrectified, bool on_re
   } else if (on_rectified) {
     throw UsageError("rectified-pixels has no effect without unrectified");
   }
-  for (const char* const option : {"cross_check", "cross_check_level"}) {
+  for (const char* const option : {"cross_check_level", "search_size", "window_levels"}) {
     if (keywords.contains(option) && !keywords[option].is_none()) {
       pair_option_ = option;
     }
@@ -62,7 +62,8 @@ void Matcher::check(const ImageArguments& arguments) const {
   }
   if (pair_option_) {
     throw UsageError(*pair_option_ +
-                     " has no effect with several images: there is no second map to compare with");
+                     " has no effect with several images: all candidates are searched at full size, "
+                     "and whole maps are compared");
   }
   if (setup_.options.reference == Side::kRight) {
     throw UsageError(

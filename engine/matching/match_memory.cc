@@ -28,6 +28,10 @@ std::size_t matching_bytes(const ResolvedMatchOptions& options, const MatchSize&
     planes += 4 * static_cast<std::size_t>(sample_phases(size.baselines[k] / size.baselines.front(),
                                                          steps_per_px(parameters)));
   }
+  // Maps of the nearest image of either side, to check the reference's.
+  const bool has_partner_maps =
+      !size.baselines.empty() && options.refinement && options.refinement->cross_check;
+  const std::size_t partner_maps = has_partner_maps ? 2 * pixels * sizeof(float) : 0;
   std::size_t grids = 0;
   if (size.along_lines) {
     // Samples of the other image along and between its lines; places of the pixels.
@@ -37,7 +41,7 @@ std::size_t matching_bytes(const ResolvedMatchOptions& options, const MatchSize&
   constexpr std::size_t kCheckedMaps = 2;  // of coarse levels
   const int check_level = options.refinement ? options.refinement->cross_check_level : 0;
   const int candidates = candidate_count(options.disparities, parameters);
-  return pixels * channels * planes * sizeof(float) + grids +
+  return pixels * channels * planes * sizeof(float) + grids + partner_maps +
          (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
          edge_weight_bytes(parameters, pixels) +
          coarse_level_bytes(parameters, size.image, candidates, size.level_bytes) +

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "engine/error.h"
 #include "engine/matching/candidate_geometry.h"
@@ -13,6 +15,36 @@
 // StereoMatcher with several other images.
 
 namespace vantage {
+namespace {
+
+std::vector<PlacedImage> placed(const Photograph& reference, std::span<const OtherView> others) {
+  std::vector<PlacedImage> images{{&reference}};
+  for (const OtherView& other : others) {
+    images.push_back({other.photograph, other.baseline / others.front().baseline});
+  }
+  return images;
+}
+
+/// Numbers of the images nearest to the first one on its sides: what they do not show, hardly any
+/// other image of that side shows.
+std::vector<std::size_t> nearest_of_sides(std::span<const PlacedImage> images) {
+  std::vector<std::size_t> nearest;
+  for (const bool is_ahead : {true, false}) {
+    std::optional<std::size_t> best;
+    for (std::size_t k = 1; k < images.size(); ++k) {
+      if ((images[k].place > 0) == is_ahead &&
+          (!best || std::abs(images[k].place) < std::abs(images[*best].place))) {
+        best = k;
+      }
+    }
+    if (best) {
+      nearest.push_back(*best);
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
 
 /// Estimates each other image against the reference; σ is that of the noisiest.
 std::vector<IntensityChanges> StereoMatcher::estimate_exposure(const Photograph& reference,
@@ -60,28 +92,29 @@ void StereoMatcher::require_several(const Photograph& reference,
   }
 }
 
-/// Prepares the input of the reference's chain.
-void StereoMatcher::prepare_several(MapTask& task, std::span<const OtherView> others,
-                                    std::span<const IntensityChanges> changes,
+/// Prepares the input of the chain of one of the images. The task's side: that of the reference, or
+/// the other one, whose partners lie in the other direction.
+void StereoMatcher::prepare_several(MapTask& task, std::size_t own,
+                                    std::span<const PlacedImage> images, Side reference_side,
                                     Prepared& prepared) const {
-  const Photograph& reference = *task.image;
   const auto geometry =
-      candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
-  prepared.images.resize(others.size() + 1);
-  prepared.images[0].prepare(reference, prepared.parameters, geometry, {true, false, false},
-                             execution_);
-  task.input = {nullptr, prepared.images.data(), {}};
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    CostImage& image = prepared.images[k + 1];
-    const double ratio = others[k].baseline / others.front().baseline;
-    image.prepare(*others[k].photograph, prepared.parameters, geometry,
-                  {.as_reference = false,
-                   .as_partner_of_left = (task.side == Side::kLeft) == (ratio > 0),
-                   .as_partner_of_right = (task.side == Side::kLeft) != (ratio > 0),
-                   .intensity_changes = changes[k],
-                   .phases = sample_phases(ratio, geometry.steps_per_px)},
-                  execution_);
-    task.input.partners.push_back({&image, ratio});
+      candidate_geometry(in_force_, Side::kLeft, task.image->width(), task.image->height());
+  const double direction = task.side == reference_side ? 1 : -1;
+  prepared.images.resize(images.size());
+  task.input = {nullptr, &prepared.images[own], {}};
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    const double ratio = (images[k].place - images[own].place) * direction;
+    prepared.images[k].prepare(
+        *images[k].photograph, prepared.parameters, geometry,
+        {.as_reference = k == own,
+         .as_partner_of_left = k != own && (task.side == Side::kLeft) == (ratio > 0),
+         .as_partner_of_right = k != own && (task.side == Side::kLeft) != (ratio > 0),
+         .intensity_changes = images[k].changes,
+         .phases = k == own ? 1 : sample_phases(ratio, geometry.steps_per_px)},
+        execution_);
+    if (k != own) {
+      task.input.partners.push_back({&prepared.images[k], ratio});
+    }
   }
 }
 
@@ -94,7 +127,7 @@ scheduler::ChainPlan StereoMatcher::plan_several(const Photograph& reference,
   MatchedMap map;  // never read
   map.disparity_px.resize(reference.width(), reference.height());
   MapTask task{.side = Side::kLeft, .image = &reference, .map = &map};
-  prepare_several(task, others, std::vector<IntensityChanges>(others.size()), *prepared);
+  prepare_several(task, 0, placed(reference, others), task.side, *prepared);
   const auto geometry =
       candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
   return plans_of(prepared->parameters, task, geometry, {&execution_.options(), 1}).front();
@@ -113,17 +146,20 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   const auto prepared = parts_->prepared.borrow();
   prepared->parameters = in_force_.parameters;
   prepared->parameters.window_levels = 0;  // windows compare two images
-  std::vector<IntensityChanges> changes(others.size());
+  std::vector<PlacedImage> images = placed(reference, others);
   if (parts_->exposure) {
     clock.start("grey levels");
-    changes = estimate_exposure(reference, others, *prepared, times);
+    const auto changes = estimate_exposure(reference, others, *prepared, times);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      images[k + 1].changes = changes[k];
+    }
     clock.start("prepare");
   }
   maps = {};
   const Side side = others.front().baseline > 0 ? Side::kLeft : Side::kRight;
   MapTask task{.side = side, .image = &reference, .map = &maps.of(side)};
   task.need = {.whole = true};
-  prepare_several(task, others, changes, *prepared);
+  prepare_several(task, 0, images, side, *prepared);
   if (!request.prior.empty() && request.prior.weight > 0) {
     task.input.prior_px = side == Side::kLeft ? request.prior.left_px : request.prior.right_px;
     task.input.prior_weight = request.prior.weight;
@@ -136,8 +172,25 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
     }
     return;
   }
+  std::vector<PartnerMap> partners;
+  if (in_force_.refinement->cross_check) {
+    for (const std::size_t k : nearest_of_sides(images)) {
+      MatchedMap& map = prepared->partner_maps[partners.size()];
+      // As the other map of a pair with the reference.
+      MapTask check{.side = images[k].place > 0 ? other_side(side) : side,
+                    .image = images[k].photograph,
+                    .map = &map,
+                    .need = {.whole = true}};
+      clock.start("prepare");
+      prepare_several(check, k, images, side, *prepared);
+      compute(check, "match check", false, 0, *prepared, clock, times, {});
+      partners.push_back({std::as_const(map.disparity_px).view(), images[k].place});
+    }
+  }
+  MapToRefine map = to_refine(task, true);
+  map.partners = partners;
   const auto work = parts_->refinement_works.borrow();
-  refine_maps(*in_force_.refinement, to_refine(task, true), nullptr, execution_, *work,
+  refine_maps(*in_force_.refinement, map, nullptr, execution_, *work,
               [&](std::string_view step) { clock.start(step); });
 }
 

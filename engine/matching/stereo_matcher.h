@@ -27,6 +27,7 @@ namespace vantage {
 class PreviousMaps;
 class StageClock;
 struct MapToRefine;
+struct PlacedImage;
 
 /// Requested outputs. A map that is not requested may still be computed for the cross-check of the
 /// other one; its contents are undefined. Without `previous`, maps do not depend on whether the
@@ -84,7 +85,8 @@ class StereoMatcher {
 
   /// Matches `reference` against all of `others` at once (6.6): the partner of column x in the k-th
   /// of them is x − d · baseline_k / |baseline_1|, so candidates are disparities between the
-  /// reference and the first. A candidate counts if any of them sees it. The result is maps.left if
+  /// reference and the first. A candidate counts if any of them sees it. A
+  /// cross-check compares with the map of the nearest image of either side. The result is maps.left if
   /// the first is to the right of the reference, maps.right if it is to the left. At least one
   /// other; all images of equal size; baselines distinct and not 0. Errors as match(), and
   /// UsageError for selection symmetric, which is of two images.
@@ -122,8 +124,8 @@ class StereoMatcher {
       const kernels::CandidateGeometry& geometry,
       std::span<const ExecutionOptions> executions) const;
   void require_several(const Photograph& reference, std::span<const OtherView> others) const;
-  void prepare_several(MapTask& task, std::span<const OtherView> others,
-                       std::span<const IntensityChanges> changes, Prepared& prepared) const;
+  void prepare_several(MapTask& task, std::size_t own, std::span<const PlacedImage> images,
+                       Side reference_side, Prepared& prepared) const;
   [[nodiscard]] std::vector<IntensityChanges> estimate_exposure(const Photograph& reference,
                                                                 std::span<const OtherView> others,
                                                                 Prepared& prepared,

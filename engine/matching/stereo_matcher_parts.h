@@ -30,6 +30,8 @@ struct StereoMatcher::Prepared {
   std::array<Image<std::int32_t>, 2> coarse_winners;
   /// Check maps beside whole maps.
   std::array<DisparityMap, 2> check_px;
+  /// Several images: those of the nearest image of either side, to check the reference's.
+  std::array<MatchedMap, 2> partner_maps;
   /// Symmetric selection: energies of the right image.
   LevelVolume right_energies;
   std::array<ReducedImages, 2> halves;  ///< of both images, to find what changed
@@ -54,6 +56,13 @@ struct StereoMatcher::MapTask {
   CoarseWinners coarse = {};             ///< empty: not needed
   ImageView<const float> check_px = {};  ///< empty: not needed
   PreviousMaps* previous = nullptr;      ///< of both maps; null: everything is searched
+};
+
+/// One of several images on a line.
+struct PlacedImage {
+  const Photograph* photograph;
+  double place = 0;  ///< 0: the reference; in the distance of the first other image, of its sign
+  IntensityChanges changes = {};  ///< to the reference's grey levels
 };
 
 struct StereoMatcher::Parts {

@@ -1,5 +1,7 @@
 #include "engine/refinement/refine_maps.h"
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "kernels/filled_median/filled_median.h"
@@ -20,12 +22,35 @@ void check_against(const MapToRefine& to_refine, const MapToRefine& other, doubl
     cross_check(map.disparity_px.view(),
                 other.check_px.empty() ? partner.disparity_px.view() : other.check_px,
                 to_refine.side, tolerance_px, execution, map.unmatched,
-                to_refine.pixels_per_column);
+                1.0F / static_cast<float>(to_refine.pixels_per_column));
     return;
   }
   cross_check({map.disparity_px.view(), map.disparity_y_px.view()},
               {partner.disparity_px.view(), partner.disparity_y_px.view()}, to_refine.side,
               tolerance_px, execution, map.unmatched);
+}
+
+void check_against_partners(const MapToRefine& to_refine, double tolerance_px, Execution& execution,
+                            RefinementWork& work) {
+  MatchedMap& map = *to_refine.map;
+  for (const PartnerMap& partner : to_refine.partners) {
+    const bool is_first = &partner == to_refine.partners.data();
+    Mask& unmatched = is_first ? map.unmatched : work.of_partner;
+    cross_check(map.disparity_px.view(), partner.disparity_px,
+                partner.baseline_ratio > 0 ? to_refine.side : other_side(to_refine.side),
+                tolerance_px, execution, unmatched,
+                static_cast<float>(std::abs(partner.baseline_ratio)));
+    if (is_first) {
+      continue;
+    }
+    execution.for_each_band(unmatched.height(), [&](int first_row, int end_row) {
+      for (int y = first_row; y < end_row; ++y) {
+        std::uint8_t* const of_all = map.unmatched.row(y);
+        std::transform(of_all, of_all + unmatched.width(), unmatched.row(y), of_all,
+                       [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); });
+      }
+    });
+  }
 }
 
 /// Samples of medians, in columns of the map.
@@ -113,7 +138,7 @@ std::size_t held_bytes(const RefinementWork& work) {
   return held_bytes(work.edge_snapping) + held_bytes(work.speckles[0]) +
          held_bytes(work.speckles[1]) + held_bytes(work.surface_fit) +
          held_bytes(work.filled_medians) + held_bytes(work.uniform_pixels) +
-         held_bytes(work.uniform) + held_bytes(work.rest);
+         held_bytes(work.uniform) + held_bytes(work.rest) + held_bytes(work.of_partner);
 }
 
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
@@ -127,13 +152,16 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
     snap_edges(options, maps, execution, work);
   }
   // Both are checked before either is changed.
-  const bool is_checked = options.cross_check && other != nullptr;
+  const bool has_partners = !map.partners.empty();
+  const bool is_checked = options.cross_check && (other != nullptr || has_partners);
   if (is_checked) {
     start_step("cross-check");
-    if (map.is_result) {
+    if (has_partners) {
+      check_against_partners(map, options.cross_check_px, execution, work);
+    } else if (map.is_result) {
       check_against(map, *other, options.cross_check_px, execution);
     }
-    if (other->is_result) {
+    if (other != nullptr && other->is_result) {
       check_against(*other, map, options.cross_check_px, execution);
     }
   }

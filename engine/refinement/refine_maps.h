@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <string_view>
 
 #include "engine/execution.h"
@@ -24,6 +25,14 @@ namespace vantage {
 /// Wider than any search.
 inline constexpr DisparityRange kAnyDisparity{-(1 << 20), 1 << 20};
 
+/// Map of one of several other images.
+struct PartnerMap {
+  ImageView<const float> disparity_px;  ///< in the unit of the map to check, NaN = unknown
+  /// Distance of its camera, in that of the cameras whose disparities these are; negative: on the
+  /// other side.
+  double baseline_ratio = 1;
+};
+
 /// One map to refine; all images have one size.
 struct MapToRefine {
   Side side = Side::kLeft;
@@ -36,6 +45,8 @@ struct MapToRefine {
   CoarseWinners coarse = {};
   /// The same, image-sized.
   ImageView<const float> check_px = {};
+  /// Of several other images, in place of the other map: a pixel is matched if one of them agrees.
+  std::span<const PartnerMap> partners = {};
   /// false: the map is only needed to cross-check the other; it and its `unmatched` are then
   /// undefined.
   bool is_result = true;
@@ -57,13 +68,15 @@ struct RefinementWork {
   UniformPixelsWork uniform_pixels;
   Mask uniform;  ///< pixels of regions without texture
   Mask rest;     ///< unmatched pixels that are not
+  Mask of_partner;
 };
 
 std::size_t held_bytes(const RefinementWork& work);
 
 /// Refines winners to dense maps (EQUATIONS §5): edge snapping → cross-check → confidence →
 /// speckles → surface fit → fill, as set in `options`. `other`: the map of the other image, also
-/// refined if it is a result; null: no cross-check, and unknown pixels are unmatched instead.
+/// refined if it is a result; null: no cross-check but with `map.partners`; without one unknown
+/// pixels are unmatched instead.
 /// `start_step` is called with the name of each step before it runs (static storage). Identical for
 /// any `execution`.
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,

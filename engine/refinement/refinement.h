@@ -11,11 +11,11 @@
 namespace vantage {
 
 /// Marks the pixels of one map that contradict the other image's map (EQUATIONS §5.2, (5.13)). Maps
-/// of equal size, NaN = unknown; tolerance_px ≥ 1; pixels_per_column: 1, or 2 for maps of half the
-/// size. Resizes the mask to the map. Identical for any `execution`.
+/// of equal size, NaN = unknown; tolerance_px ≥ 1; columns_per_px: of disparity, > 0: ½ for maps of
+/// half the size, the ratio of two baselines. Resizes the mask to the map. Identical for any `execution`.
 void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched,
-                 int pixels_per_column = 1);
+                 float columns_per_px = 1);
 
 /// Winners of a coarse level of a map: numbers of candidates.
 struct CoarseWinners {

@@ -11,7 +11,8 @@ struct CrossCheckRow {
   double tolerance_px = 1;            ///< > 0
   int width = 0;                      ///< below 2²¹
   std::uint8_t* unmatched = nullptr;  ///< `width` marks; output
-  float columns_per_px = 1;           ///< 1, or ½: of a map of half the size
+  /// > 0: 1, ½ of a map of half the size, or the ratio of two baselines.
+  float columns_per_px = 1;
 };
 
 /// A row of winners on a coarse level, each of which is valid for 2^level columns.
@@ -23,11 +24,10 @@ struct CoarseWinnerRow {
 };
 
 /// Marks the pixels of one row of a disparity map that the other image's map contradicts (5.13).
-/// unmatched[x] = 255 if own_px[x] is unknown (NaN), if the partner column floor(x + direction ·
-/// columns_per_px · d
-/// + ½) is outside the row, if the other map is unknown there, or if |own − other| ≥ tolerance_px;
-/// otherwise 0. other_px: `width` values. Exact, so identical on every instruction set and to the
-/// reference.
+/// unmatched[x] = 255 if own_px[x] is unknown (NaN), if the partner column floor(x + s + ½) with
+/// s = direction · columns_per_px · d, rounded to float, is outside the row, if the other map is
+/// unknown there, or if |own − other| ≥ tolerance_px; otherwise 0. other_px: `width` values. All else
+/// is exact, so identical on every instruction set and to the reference.
 void cross_check_row(const CrossCheckRow& row, const float* other_px);
 void cross_check_row_ref(const CrossCheckRow& row, const float* other_px);
 

@@ -10,7 +10,7 @@ template <typename Other>
 void check_each_column(const CrossCheckRow& row, const Other& other_px) {
   for (int x = 0; x < row.width; ++x) {
     const double own = row.own_px[x];
-    const double columns = row.direction * static_cast<double>(row.columns_per_px) * own;
+    const double columns = static_cast<float>(row.direction) * row.columns_per_px * row.own_px[x];
     const double partner = std::floor(x + columns + 0.5);
     bool agrees = false;
     if (partner >= 0 && partner < row.width) {  // false for NaN

@@ -48,7 +48,7 @@ def test_several_images(line, line_files, options):
     ({}, {"baselines": [1]}, "baselines has 1 number, expected 2: one for each image but the first"),
     ({}, {}, "baselines has 0 numbers, expected 2"),
     ({}, {"baselines": [1, 0]}, "baseline 2 is 0"),
-    ({"cross_check": 1}, {"baselines": [1, 2]}, "cross_check has no effect with several images"),
+    ({"window_levels": 1}, {"baselines": [1, 2]}, "window_levels has no effect with several images"),
     ({"reference": "right"}, {"baselines": [1, 2]}, "reference right cannot be used"),
     ({"method": "ssd", "disparities_y": (0, 1)}, {"baselines": [1, 2]}, "disparities-y cannot be"),
     ({}, {"baselines": [1, 2], "right_disparity": True}, "right_disparity cannot be had"),

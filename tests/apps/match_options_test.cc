@@ -128,7 +128,8 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--jump-limit", "3"}, "it is read by selection scanline"},
       {{"--selection", "symmetric", "--cross-check", "2"}, "both maps are of one solution"},
       {{"--selection", "symmetric", "--baselines", "1"}, "a symmetric solution is of two images"},
-      {{"--baselines", "1", "--cross-check", "2"}, "--cross-check has no effect with several"},
+      {{"--baselines", "1", "--cross-check-level", "1"}, "has no effect with several images"},
+      {{"--baselines", "1", "--window-levels", "0"}, "--window-levels has no effect with several"},
       {{"--tuning", "t.json", "--no-tuning"}, "--tuning has no effect with --no-tuning"},
       {{"--max-disp", "64"}, "'--max-disp': --disparities MIN:MAX is the range to search"},
       {{"--xyzzy"}, "'--xyzzy'; 'vantage match --help-all' lists all"},
@@ -452,17 +453,14 @@ TEST_F(MatchCommandOptions, TwoComponentsAreWrittenAsFlow) {
 TEST_F(MatchCommandOptions, SeveralImagesOfOneCameraAgreeWithThePair) {
   // The right image once more at twice the baseline would need twice the disparities; from the
   // other side of the reference a pair of mirrored baselines is the pair itself.
-  ASSERT_EQ(match(folder_ / "a.pfm", {"--cross-check", "none", "--method", "diffusion"}).exit_code,
-            0);
+  ASSERT_EQ(match(folder_ / "a.pfm", {"--method", "diffusion"}).exit_code, 0);
   ASSERT_EQ(match(folder_ / "b.pfm", {"--baselines", "2.5", "--method", "diffusion"}).exit_code, 0);
   EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
   ASSERT_EQ(run_vantage({"match", right_, left_, "-o", folder_ / "c.pfm", "--disparities=0:9",
                          "--baselines=-1", "--method", "diffusion"})
                 .exit_code,
             0);
-  ASSERT_EQ(match(folder_ / "d.pfm",
-                  {"--reference", "right", "--cross-check", "none", "--method", "diffusion"})
-                .exit_code,
+  ASSERT_EQ(match(folder_ / "d.pfm", {"--reference", "right", "--method", "diffusion"}).exit_code,
             0);
   EXPECT_EQ(read_file(folder_ / "c.pfm"), read_file(folder_ / "d.pfm"));
 }

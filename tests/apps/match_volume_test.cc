@@ -119,7 +119,7 @@ TEST_F(MatchVolume, SymmetricSelectionSaysWhatItWouldKeep) {
   write_photograph(folder_ / "large.png", {std::move(image)});
   const ProcessResult result =
       run_vantage({"match", folder_ / "large.png", folder_ / "large.png", "-o", folder_ / "m.pfm",
-                   "--disparities=0:500", "--selection", "symmetric", "--memory", "40M"});
+                   "--disparities=0:500", "--selection", "symmetric", "--memory", "80M"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(is_one_line(result, "match")) << result.err;
   EXPECT_THAT(result.err, HasSubstr("symmetric selection, which keeps 175 MiB of energies (600x300 "

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -31,24 +32,26 @@ std::optional<float> value_at(const std::vector<float>& map, double x) {
 
 /// EQUATIONS §5.2 for one pixel of the left (direction −1) or right map.
 bool matched(const std::vector<float>& own, const std::vector<float>& other, int direction,
-             double tolerance_px, std::size_t x) {
+             double tolerance_px, std::size_t x, float columns_per_px) {
   if (std::isnan(own[x])) {
     return false;
   }
-  const double shift = own[x];
+  const double shift = columns_per_px * own[x];
   const auto partner = value_at(other, static_cast<double>(x) + (direction < 0 ? -shift : shift));
-  return partner && std::abs(shift - static_cast<double>(*partner)) < tolerance_px;
+  return partner &&
+         std::abs(static_cast<double>(own[x]) - static_cast<double>(*partner)) < tolerance_px;
 }
 
 std::vector<std::uint8_t> checked(const std::vector<float>& own, const std::vector<float>& other,
-                                  int direction, double tolerance_px) {
+                                  int direction, double tolerance_px, float columns_per_px = 1) {
   GuardedRow<std::uint8_t> unmatched(own.size(), 3, kSentinel);
   GuardedRow<std::uint8_t> reference(own.size(), 3, kSentinel);
   CrossCheckRow row{.own_px = own.data(),
                     .direction = direction,
                     .tolerance_px = tolerance_px,
                     .width = static_cast<int>(own.size()),
-                    .unmatched = unmatched.data()};
+                    .unmatched = unmatched.data(),
+                    .columns_per_px = columns_per_px};
   cross_check_row(row, other.data());
   row.unmatched = reference.data();
   cross_check_row_ref(row, other.data());
@@ -79,12 +82,14 @@ TEST_P(CrossCheck, EqualsPlainTranscription) {
         other[x] = draw();
       }
       const double tolerance_px = 1.0 + 0.25 * round;
+      const float columns_per_px = std::array{1.0F, 0.5F, 0.37F, 1.7F}[round % 4];
       for (const int direction : {-1, 1}) {
         std::vector<std::uint8_t> expected;
         for (std::size_t x = 0; x < own.size(); ++x) {
-          expected.push_back(matched(own, other, direction, tolerance_px, x) ? 0 : 255);
+          expected.push_back(matched(own, other, direction, tolerance_px, x, columns_per_px) ? 0
+                                                                                             : 255);
         }
-        ASSERT_EQ(checked(own, other, direction, tolerance_px), expected)
+        ASSERT_EQ(checked(own, other, direction, tolerance_px, columns_per_px), expected)
             << "width " << width << ", round " << round << ", direction " << direction;
       }
     }
