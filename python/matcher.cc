@@ -62,8 +62,8 @@ void Matcher::check(const ImageArguments& arguments) const {
   }
   if (pair_option_) {
     throw UsageError(*pair_option_ +
-                     " has no effect with several images: all candidates are searched at full size, "
-                     "and whole maps are compared");
+                     " has no effect with several images: all candidates are searched at full "
+                     "size, and whole maps are compared");
   }
   if (setup_.options.reference == Side::kRight) {
     throw UsageError(
