@@ -58,8 +58,7 @@ void erase_unmatched(const Mask& unmatched, Execution& execution, DisparityMap& 
 }  // namespace
 
 void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, Side side,
-                 double tolerance_px, Execution& execution, Mask& unmatched,
-                 float columns_per_px) {
+                 double tolerance_px, Execution& execution, Mask& unmatched, float columns_per_px) {
   unmatched.resize(map_px.width(), map_px.height());
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {

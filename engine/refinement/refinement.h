@@ -12,7 +12,8 @@ namespace vantage {
 
 /// Marks the pixels of one map that contradict the other image's map (EQUATIONS §5.2, (5.13)). Maps
 /// of equal size, NaN = unknown; tolerance_px ≥ 1; columns_per_px: of disparity, > 0: ½ for maps of
-/// half the size, the ratio of two baselines. Resizes the mask to the map. Identical for any `execution`.
+/// half the size, the ratio of two baselines. Resizes the mask to the map. Identical for any
+/// `execution`.
 void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched,
                  float columns_per_px = 1);

@@ -26,8 +26,8 @@ struct CoarseWinnerRow {
 /// Marks the pixels of one row of a disparity map that the other image's map contradicts (5.13).
 /// unmatched[x] = 255 if own_px[x] is unknown (NaN), if the partner column floor(x + s + ½) with
 /// s = direction · columns_per_px · d, rounded to float, is outside the row, if the other map is
-/// unknown there, or if |own − other| ≥ tolerance_px; otherwise 0. other_px: `width` values. All else
-/// is exact, so identical on every instruction set and to the reference.
+/// unknown there, or if |own − other| ≥ tolerance_px; otherwise 0. other_px: `width` values. All
+/// else is exact, so identical on every instruction set and to the reference.
 void cross_check_row(const CrossCheckRow& row, const float* other_px);
 void cross_check_row_ref(const CrossCheckRow& row, const float* other_px);
 
