@@ -85,9 +85,9 @@ class StereoMatcher {
 
   /// Matches `reference` against all of `others` at once (6.6): the partner of column x in the k-th
   /// of them is x − d · baseline_k / |baseline_1|, so candidates are disparities between the
-  /// reference and the first. A candidate counts if any of them sees it. A cross-check compares with
-  /// the map of the nearest image of either side. The result is maps.left if the first is to the
-  /// right of the reference, maps.right if it is to the left. At least one other; all images of
+  /// reference and the first. A candidate counts if any of them sees it. A cross-check compares
+  /// with the map of the nearest image of either side. The result is maps.left if the first is to
+  /// the right of the reference, maps.right if it is to the left. At least one other; all images of
   /// equal size; baselines distinct and not 0. Errors as match(), and UsageError for selection
   /// symmetric, which is of two images.
   void match_several(const Photograph& reference, std::span<const OtherView> others,
