@@ -129,7 +129,7 @@ std::vector<const BookFigure*> figures_of(const ExperimentJob& job) {
 
 void print_list() {
   for (const BookFigure& figure : book_figures()) {
-    const std::string settings = describe_settings(figure.defaults);
+    const std::string settings = describe_settings(figure, figure.defaults);
     fmt::print("{:<12} {}\n{:<12} {}{}\n", figure.key, figure.title, "",
                settings.empty() ? "nothing to choose" : "", settings);
   }
@@ -144,7 +144,7 @@ SettingValue describe_figure(const MadeFigure& made, const std::vector<std::stri
   }
   return {{"title", made.figure->title},
           {"images", made.content.images},
-          {"settings", describe_settings(made.settings)},
+          {"settings", describe_settings(*made.figure, made.settings)},
           {"comparisons", comparisons},
           {"files", files}};
 }

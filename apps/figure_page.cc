@@ -70,7 +70,7 @@ std::string figure_section(const MadeFigure& made) {
     }
   };
   add_line("Images", made.content.images);
-  add_line("Settings", describe_settings(made.settings));
+  add_line("Settings", describe_settings(figure, made.settings));
   if (!made.content.comparisons.empty()) {
     html += html_table(table_of(made.content.comparisons));
   }
@@ -85,7 +85,8 @@ std::string figure_section(const MadeFigure& made) {
 
 }  // namespace
 
-std::string describe_settings(const FigureSettings& settings) {
+std::string describe_settings(const BookFigure& figure, const FigureSettings& in_force) {
+  const FigureSettings settings = settings_read(figure, in_force);
   std::vector<std::string> parts;
   const auto add_list = [&parts](const char* name, const auto& list) {
     if (!list.empty()) {

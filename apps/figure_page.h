@@ -19,7 +19,7 @@ struct MadeFigure {
 std::string make_figure_page(const std::vector<MadeFigure>& figures, const std::string& command,
                              const std::string& machine);
 
-/// "size 100, iterations 10, …": what can be chosen, and the parameters that were. Empty: nothing.
-std::string describe_settings(const FigureSettings& settings);
+/// "size 100, iterations 10, …": what the figure reads of its settings in force. Empty: nothing.
+std::string describe_settings(const BookFigure& figure, const FigureSettings& in_force);
 
 }  // namespace vantage::apps

@@ -234,6 +234,9 @@ void check(const MatchJob& job, const Settings& settings) {
   if (job.tuning.ignored) {
     settings.refuse_idle({"tuning"}, "with --no-tuning");
   }
+  if (job.depth.resolution_file.empty() && job.common.report.empty()) {
+    settings.refuse_idle({"disparity-resolution"}, "without --depth-resolution and --report");
+  }
   if (job.depth.calibration.empty()) {
     settings.refuse_idle({"kept-outline"}, "without --calibration");
     if (job.unrectified.empty()) {

@@ -213,7 +213,8 @@ std::vector<ComparisonRun> compare_methods(const ComparisonOptions& options, Exe
   for (const std::string& pair : options.pairs) {
     for (const double noise : options.noise_sigmas) {
       for (const std::string& method : options.methods) {
-        for (const int iterations : options.iterations) {
+        const bool is_iterative = compared_method(method).is_iterative;
+        for (const int iterations : is_iterative ? options.iterations : std::vector{0}) {
           runs.push_back({.pair = pair,
                           .noise_sigma = noise,
                           .method = method,

@@ -51,7 +51,7 @@ struct ComparisonRun {
   std::string pair;
   double noise_sigma = 0;
   std::string method;
-  int iterations = 0;
+  int iterations = 0;  ///< of iterative methods
   /// Errors of the map over the non-occluded pixels of the reference image.
   DisparityScores scores;
   DisparityMap map;  ///< on the grid of the reference image
@@ -61,7 +61,8 @@ struct ComparisonRun {
 BookPairOptions comparison_pair(const ComparisonOptions& options, std::string_view pair,
                                 double noise_sigma);
 
-/// All runs, the last of the four lists varying fastest. Empty when `stop` was set before the end.
+/// All runs, the last of the four lists varying fastest; one run of methods that are not iterative,
+/// whatever the iterations. Empty when `stop` was set before the end.
 /// Runs are distributed over the threads; identical for any `execution`. Throws UsageError for
 /// invalid options.
 std::vector<ComparisonRun> compare_methods(const ComparisonOptions& options, Execution& execution,

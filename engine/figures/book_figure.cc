@@ -58,32 +58,50 @@ std::vector<std::string> methods_of(const BookFigure& figure, const FigureSettin
   return methods;
 }
 
-void check_parameters(const std::vector<const BookFigure*>& figures, const FigureSettings& chosen) {
-  std::vector<MethodParameters> in_force;
+/// The parameters of each method in force.
+std::vector<MethodParameters> parameters_of(const BookFigure& figure,
+                                            const FigureSettings& in_force) {
+  std::vector<MethodParameters> all;
+  for (const std::string& name : methods_of(figure, in_force)) {
+    MatchOptions options = compared_method(name).options(BookPattern::kRamp);
+    take_over(in_force.parameters, options.parameters);
+    all.push_back(options.resolved());
+  }
+  return all;
+}
+
+bool reads(const BookFigure& figure, const std::vector<MethodParameters>& parameters,
+           const MethodField& field) {
+  const bool is_of_figure =
+      figure.parameters.empty() ||
+      std::ranges::find(figure.parameters, field.option) != figure.parameters.end();
+  return is_of_figure && std::ranges::any_of(parameters, [&field](const MethodParameters& method) {
+           return field.is_read(method);
+         });
+}
+
+/// Throws UsageError for the first parameter of `chosen` that is not in `read`.
+void check_parameters(const std::vector<const BookFigure*>& figures, const FigureSettings& chosen,
+                      const MethodOverrides& read) {
   std::vector<std::string> names;
   for (const BookFigure* figure : figures) {
     for (const std::string& name : methods_of(*figure, settings_in_force(*figure, chosen))) {
       if (std::ranges::find(names, name) == names.end()) {
-        MatchOptions options = compared_method(name).options(BookPattern::kRamp);
-        take_over(chosen.parameters, options.parameters);
-        in_force.push_back(options.resolved());
         names.push_back(name);
       }
     }
   }
   visit_fields(
-      [&](const MethodField& field, const auto& value) {
-        const bool is_read = std::ranges::any_of(
-            in_force, [&field](const MethodParameters& method) { return field.is_read(method); });
-        if (value && !is_read) {
-          throw UsageError(fmt::format(
-              "--{} has no effect: {}", field.option,
-              names.empty()
-                  ? "the figures match no images"
-                  : fmt::format("none of the methods {} reads it", fmt::join(names, ", "))));
+      [&names](const MethodField& field, const auto& wanted, const auto& any) {
+        if (wanted && !any) {
+          throw UsageError(
+              fmt::format("--{} has no effect: {}", field.option,
+                          names.empty() ? "the figures match no images"
+                                        : fmt::format("the figures do not read it, with methods {}",
+                                                      fmt::join(names, ", "))));
         }
       },
-      chosen.parameters);
+      chosen.parameters, read);
 }
 
 }  // namespace
@@ -101,17 +119,37 @@ FigureSettings settings_in_force(const BookFigure& figure, const FigureSettings&
   return settings;
 }
 
+FigureSettings settings_read(const BookFigure& figure, const FigureSettings& in_force) {
+  FigureSettings read = in_force;
+  const auto methods = methods_of(figure, in_force);
+  if (std::ranges::none_of(
+          methods, [](const std::string& name) { return compared_method(name).is_iterative; })) {
+    read.iterations.clear();
+  }
+  const auto parameters = parameters_of(figure, in_force);
+  visit_fields(
+      [&](const MethodField& field, auto& value) {
+        if (!reads(figure, parameters, field)) {
+          value.reset();
+        }
+      },
+      read.parameters);
+  return read;
+}
+
 void check_settings(const std::vector<const BookFigure*>& figures, const FigureSettings& chosen) {
   check_values(chosen);
   FigureSettings read;
   for (const BookFigure* figure : figures) {
+    const FigureSettings of_figure = settings_read(*figure, settings_in_force(*figure, chosen));
     visit_settings(
         [](const char* /*option*/, const auto& field, auto& any) {
           if (has_value(field)) {
             any = field;
           }
         },
-        figure->defaults, read);
+        of_figure, read);
+    take_over(of_figure.parameters, read.parameters);
   }
   visit_settings(
       [](const char* option, const auto& wanted, const auto& any) {
@@ -120,7 +158,7 @@ void check_settings(const std::vector<const BookFigure*>& figures, const FigureS
         }
       },
       chosen, read);
-  check_parameters(figures, chosen);
+  check_parameters(figures, chosen, read.parameters);
 }
 
 }  // namespace vantage

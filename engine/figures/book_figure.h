@@ -85,12 +85,18 @@ struct BookFigure {
   FigureSettings defaults;
   /// Method whose parameters the figure reads although it reads no methods; empty: none.
   std::string_view method = {};
+  /// Options of the only parameters of `method` that the figure reads; empty: all that it reads.
+  std::vector<std::string_view> parameters = {};
   BookImages images = BookImages::kNone;  ///< which the figure is about
   FigureContent (*make)(const FigureRun& run) = nullptr;
 };
 
 /// The settings in force: those of `chosen` that the figure reads, else its defaults.
 FigureSettings settings_in_force(const BookFigure& figure, const FigureSettings& chosen);
+
+/// What a figure reads of its settings in force: iterations only where a method in force is
+/// iterative, and the parameters of these methods.
+FigureSettings settings_read(const BookFigure& figure, const FigureSettings& in_force);
 
 /// Throws UsageError for values out of range, and for the first setting of `chosen` that none of
 /// `figures` reads.

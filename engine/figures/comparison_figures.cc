@@ -50,7 +50,8 @@ LinePlot noise_plot(const FigureSettings& settings, const std::string& pair,
     plot.x_axis.categories.push_back(noise_label(sigma));
   }
   for (const std::string& method : settings.methods) {
-    for (const int iterations : settings.iterations) {
+    const bool is_iterative = compared_method(method).is_iterative;
+    for (const int iterations : is_iterative ? settings.iterations : std::vector{0}) {
       PlotSeries series{curve_name(settings, method, iterations), {}, {}};
       for (const ComparisonRun& run : runs) {
         if (run.pair == pair && run.method == method && run.iterations == iterations) {
@@ -59,9 +60,6 @@ LinePlot noise_plot(const FigureSettings& settings, const std::string& pair,
         }
       }
       plot.series.push_back(std::move(series));
-      if (!compared_method(method).is_iterative) {
-        break;  // the others are equal
-      }
     }
   }
   return plot;
@@ -154,8 +152,12 @@ LinePlot iteration_plot(const FigureSettings& settings, const std::string& pair,
   for (const std::string& method : settings.methods) {
     PlotSeries series{method, {}, {}};
     for (const ComparisonRun& run : runs) {
-      if (run.pair == pair && run.noise_sigma == noise && run.method == method) {
-        series.x.push_back(run.iterations);
+      if (run.pair != pair || run.noise_sigma != noise || run.method != method) {
+        continue;
+      }
+      const bool is_iterative = compared_method(method).is_iterative;
+      for (const int n : is_iterative ? std::vector{run.iterations} : settings.iterations) {
+        series.x.push_back(n);
         series.y.push_back(run.scores.*measure.value);
       }
     }
@@ -164,7 +166,8 @@ LinePlot iteration_plot(const FigureSettings& settings, const std::string& pair,
   return plot;
 }
 
-/// One row per method, a column per number of iterations, all with one scale.
+/// One row per iterative method, a column per number of iterations, then the other methods, all
+/// with one scale.
 Drawing maps_by_iterations(const FigureSettings& settings, const std::string& pair, double noise,
                            const std::vector<ComparisonRun>& runs) {
   constexpr double kMapSide = 150;
@@ -179,10 +182,15 @@ Drawing maps_by_iterations(const FigureSettings& settings, const std::string& pa
       shown.push_back(&run);
     }
   }
+  const auto is_iterative = [](const ComparisonRun* run) {
+    return compared_method(run->method).is_iterative;
+  };
+  std::ranges::stable_partition(shown, is_iterative);
   std::vector<SheetPicture> pictures;
   for (const ComparisonRun* run : shown) {
-    pictures.push_back({fmt::format("{}, n = {}", run->method, run->iterations),
-                        grey_picture(run->map.view(), range.min_px, range.max_px)});
+    pictures.push_back(
+        {is_iterative(run) ? fmt::format("{}, n = {}", run->method, run->iterations) : run->method,
+         grey_picture(run->map.view(), range.min_px, range.max_px)});
   }
   return draw_picture_sheet(
       fmt::format("Disparities of {} by iterations, noise {}", pair, noise_label(noise)), pictures,
@@ -190,12 +198,11 @@ Drawing maps_by_iterations(const FigureSettings& settings, const std::string& pa
 }
 
 /// Share of pixels that differ between the last two numbers of iterations.
-std::string last_change(const std::string& method, const std::vector<ComparisonRun>& runs,
-                        const FigureSettings& settings) {
+std::string last_change(const std::string& method, const std::vector<ComparisonRun>& runs) {
   std::string text;
-  const std::size_t steps = settings.iterations.size();
-  for (std::size_t i = steps - 1; i < runs.size(); i += steps) {
-    if (runs[i].method == method) {
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    const bool is_last = i + 1 == runs.size() || !differ_in_iterations(runs[i], runs[i + 1]);
+    if (runs[i].method == method && is_last && differ_in_iterations(runs[i - 1], runs[i])) {
       const DisparityMap& before = runs[i - 1].map;
       const DisparityMap& after = runs[i].map;
       int changed = 0;
@@ -235,11 +242,14 @@ FigureContent make_iterations_figure(const FigureRun& run) {
   content.tables.push_back(table_of(runs));
   if (const std::size_t steps = settings.iterations.size(); steps > 1) {
     for (const std::string& method : settings.methods) {
+      if (!compared_method(method).is_iterative) {
+        continue;
+      }
       content.comparisons.push_back(
           {fmt::format("{}: pixels that change from n = {} to {}", method,
                        settings.iterations[steps - 2], settings.iterations[steps - 1]),
            method == "diffusion" ? "keeps blurring" : "converges quickly",
-           last_change(method, runs, settings)});
+           last_change(method, runs)});
     }
   }
   return content;

@@ -103,27 +103,35 @@ std::pair<double, double> mean_values(const DisparitySpace& space, const BookPai
 
 FigureContent make_sections(const FigureRun& run) {
   FigureContent content;
-  FigureTable table{
-      "",
-      {"pair", "method", "iterations", "mean_at_true_disparity", "mean_at_other_candidates"},
-      {}};
+  FigureTable table{"",
+                    {"pair", "method", "iterations", "noise_sigma", "mean_at_true_disparity",
+                     "mean_at_other_candidates"},
+                    {}};
   for (const std::string& name : run.settings.pairs) {
     std::vector<SheetPicture> layers;
     std::vector<SheetPicture> sections;
     int candidates = 1;
-    for (const double noise : run.settings.noise_sigmas) {
+    for (const double chosen_noise : run.settings.noise_sigmas) {
+      const double noise = noise_in_force(chosen_noise, name);
       const BookPair pair = pair_of(run.settings, name, noise);
       candidates = pair.search.count();
       for (const std::string& method : run.settings.methods) {
-        for (const int iterations : run.settings.iterations) {
+        const bool is_iterative = compared_method(method).is_iterative;
+        for (const int iterations : is_iterative ? run.settings.iterations : std::vector{0}) {
           const DisparitySpace space =
               space_of(run, pair, name, method, iterations, run.settings.parameters);
-          const std::string title = iterations == 0 ? fmt::format("{}: E0", method)
-                                                    : fmt::format("{}: n = {}", method, iterations);
+          std::string title = method;
+          if (is_iterative) {
+            title += iterations == 0 ? ": E0" : fmt::format(": n = {}", iterations);
+          }
+          if (noise > 0) {
+            title += fmt::format(", noise {}", noise_label(noise));
+          }
           add_sections(space, title, layers, sections);
           const auto [at_truth, elsewhere] = mean_values(space, pair);
-          table.rows.push_back({name, method, fmt::format("{}", iterations),
-                                fmt::format("{:.6g}", at_truth), fmt::format("{:.6g}", elsewhere)});
+          table.rows.push_back({name, method, iterations_field(method, iterations),
+                                fmt::format("{}", noise), fmt::format("{:.6g}", at_truth),
+                                fmt::format("{:.6g}", elsewhere)});
         }
       }
     }

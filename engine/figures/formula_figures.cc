@@ -109,6 +109,7 @@ std::vector<BookFigure> formula_figures() {
                "has values for single pairs of vectors.",
        .defaults = {},
        .method = "gradient",
+       .parameters = {"alpha"},
        .make = make_evidence_levels},
       {.key = "6.11",
        .section = "6.5.1",
@@ -117,6 +118,7 @@ std::vector<BookFigure> formula_figures() {
                "unit impulse beside it.",
        .defaults = {},
        .method = "bayes",
+       .parameters = {"epsilon-prior", "sigma-prior"},
        .make = make_prior}};
 }
 

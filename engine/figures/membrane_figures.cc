@@ -152,6 +152,7 @@ std::vector<BookFigure> membrane_figures() {
            .book = "A surface and contour lines of the support function for beta = 0.7.",
            .defaults = {.iterations = {1, 10, 30, 100}},
            .method = "membrane",
+           .parameters = {"beta"},
            .make = make_support}};
 }
 

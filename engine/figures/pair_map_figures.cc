@@ -101,17 +101,41 @@ const TitledRun* find_run(const std::vector<TitledRun>& runs, const std::string&
   return found == runs.end() ? nullptr : &*found;
 }
 
+bool reads_window(const std::string& method, MethodOverrides parameters) {
+  parameters.window_px = 3;
+  return compared_options(compared_method(method), BookPattern::kRamp, 1, parameters)
+      .parameters.window_px.has_value();
+}
+
 FigureContent make_windows(const FigureRun& run) {
   const std::optional<int> chosen = run.settings.parameters.window_px;
+  FigureSettings with_windows = run.settings;
+  FigureSettings without = run.settings;
+  std::erase_if(with_windows.methods, [&run](const std::string& method) {
+    return !reads_window(method, run.settings.parameters);
+  });
+  std::erase_if(without.methods, [&run](const std::string& method) {
+    return reads_window(method, run.settings.parameters);
+  });
   std::vector<TitledRun> runs;
-  for (const int window_px : chosen ? std::vector{*chosen} : std::vector{3, 7}) {
+  const auto add = [&](const FigureSettings& settings, std::optional<int> window_px) {
+    if (settings.methods.empty()) {
+      return true;
+    }
     MethodOverrides more;
     more.window_px = window_px;
-    auto some = titled(runs_of(run, more), fmt::format("w = {}", window_px));
-    if (some.empty()) {
+    auto some = titled(runs_of({settings, run.execution, run.stop, run.given}, more),
+                       window_px ? fmt::format("w = {}", *window_px) : "");
+    std::ranges::move(some, std::back_inserter(runs));
+    return !some.empty();
+  };
+  for (const int window_px : chosen ? std::vector{*chosen} : std::vector{3, 7}) {
+    if (!add(with_windows, window_px)) {
       return {};
     }
-    std::move(some.begin(), some.end(), std::back_inserter(runs));
+  }
+  if (!add(without, std::nullopt)) {
+    return {};
   }
   FigureContent content = show_maps("Disparities of SSD", runs);
   const auto levels = [](const TitledRun& large) {
@@ -156,8 +180,12 @@ FigureContent make_membrane_maps(const FigureRun& run) {
     return {};
   }
   FigureContent content = show_maps("Disparities of the membrane model", runs);
-  const std::size_t steps = run.settings.iterations.size();
-  for (std::size_t i = steps - 1; steps > 1 && i < runs.size(); i += steps) {
+  for (std::size_t i = 1; i < runs.size(); ++i) {
+    const bool is_last =
+        i + 1 == runs.size() || !differ_in_iterations(runs[i].run, runs[i + 1].run);
+    if (!is_last || !differ_in_iterations(runs[i - 1].run, runs[i].run)) {
+      continue;
+    }
     content.comparisons.push_back(
         {fmt::format("{}, {}: n = {} and n = {}", runs[i].run.pair, runs[i].run.method,
                      runs[i - 1].run.iterations, runs[i].run.iterations),

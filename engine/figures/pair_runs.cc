@@ -47,13 +47,21 @@ std::vector<ComparisonRun> runs_of(const FigureRun& run, const MethodOverrides& 
   return all;
 }
 
+std::string iterations_field(const std::string& method, int iterations) {
+  return compared_method(method).is_iterative ? fmt::format("{}", iterations) : "";
+}
+
+bool differ_in_iterations(const ComparisonRun& a, const ComparisonRun& b) {
+  return a.pair == b.pair && a.noise_sigma == b.noise_sigma && a.method == b.method;
+}
+
 FigureTable table_of(const std::vector<ComparisonRun>& runs) {
   FigureTable table{"",
                     {"pair", "method", "iterations", "noise_sigma", "mean_absolute_px", "rms_px",
                      "bad_percent", "evaluated_pixels"},
                     {}};
   for (const ComparisonRun& run : runs) {
-    table.rows.push_back({run.pair, run.method, fmt::format("{}", run.iterations),
+    table.rows.push_back({run.pair, run.method, iterations_field(run.method, run.iterations),
                           fmt::format("{}", run.noise_sigma),
                           fmt::format("{:.6f}", run.scores.average_px),
                           fmt::format("{:.6f}", run.scores.rms_px),

@@ -15,6 +15,12 @@ double noise_in_force(double noise_sigma, const std::string& pair);
 /// The runs that settings ask for, with `more` parameters; empty when stopped.
 std::vector<ComparisonRun> runs_of(const FigureRun& run, const MethodOverrides& more = {});
 
+/// Of a table; empty for methods that are not iterative.
+std::string iterations_field(const std::string& method, int iterations);
+
+/// Whether two runs differ in nothing but iterations.
+bool differ_in_iterations(const ComparisonRun& a, const ComparisonRun& b);
+
 /// The columns and rows of a figure's main table.
 FigureTable table_of(const std::vector<ComparisonRun>& runs);
 

@@ -32,7 +32,7 @@ TEST(ExperimentCommand, WritesNumbersChartsAndAPage) {
               ElementsAre("figure-6.17-bad.svg", "figure-6.17-book.csv", "figure-6.17.csv",
                           "figure-6.9-book.csv", "figure-6.9-levels.svg", "figure-6.9-sections.svg",
                           "figure-6.9-surface.svg", "figure-6.9.csv", "figures.html"));
-  EXPECT_EQ(lines_of(read_file(out + "/figure-6.17.csv")), 1 + 2 * 2 * 4 * 2);
+  EXPECT_EQ(lines_of(read_file(out + "/figure-6.17.csv")), 1 + 2 * 2 * (1 + 3 * 2));
   for (const std::string name : {"6.17-bad", "6.9-sections"}) {
     const XmlOutline plot = read_xml(read_file(out + "/figure-" + name + ".svg"));
     EXPECT_EQ(plot.error, "") << name;
@@ -94,6 +94,57 @@ TEST(ExperimentCommand, IsReproducible) {
   EXPECT_NE(run(folder / "d", {"--window", "9"}), once);
 }
 
+TEST(ExperimentCommand, EachRowIsAnotherComputation) {
+  const TemporaryFolder folder;
+  const auto rows_of = [&folder](const std::string& figure, std::vector<std::string> more) {
+    const std::string out = folder / ("rows-" + figure);
+    more.insert(more.begin(), {"experiment", figure, "-o", out, "--quiet", "--size", "24",
+                               "--pairs", "rds-square"});
+    const ProcessResult result = run_vantage(more);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return read_file(out + "/figure-" + figure + ".csv");
+  };
+  // Methods that read no iterations or no window have one row.
+  const std::string noise =
+      rows_of("6.16", {"--methods", "balanced,bayes", "--iterations", "5,20", "--noise", "0"});
+  EXPECT_EQ(lines_of(noise), 1 + 1 + 2) << noise;
+  EXPECT_THAT(noise, HasSubstr("rds-square,balanced,,0,"));
+  const std::string windows = rows_of("6.5", {"--methods", "bayes,ssd", "--iterations", "1"});
+  EXPECT_EQ(lines_of(windows), 1 + 1 + 2) << windows;
+  EXPECT_THAT(windows, Not(HasSubstr("bayes, w =")));
+  const std::string maps = rows_of("6.10", {"--methods", "bayes,ssd", "--iterations", "1,2"});
+  EXPECT_EQ(lines_of(maps), 1 + 2 + 1) << maps;
+  EXPECT_THAT(read_file(folder / "rows-6.10/figure-6.10-book.csv"), Not(HasSubstr("ssd")));
+  const std::string membrane =
+      rows_of("6.8", {"--methods", "ssd,membrane", "--iterations", "1,2,4"});
+  EXPECT_EQ(lines_of(membrane), 1 + 1 + 3) << membrane;
+  EXPECT_THAT(read_file(folder / "rows-6.8/figure-6.8-book.csv"),
+              AllOf(HasSubstr("membrane: n = 2 and n = 4"), Not(HasSubstr("ssd"))));
+  const std::string sections =
+      rows_of("6.7", {"--methods", "ssd,membrane", "--iterations", "0,1", "--noise", "0,8"});
+  EXPECT_EQ(lines_of(sections), 1 + 2 * (1 + 2)) << sections;
+  EXPECT_THAT(sections, AllOf(HasSubstr("rds-square,ssd,,8,"), HasSubstr("membrane,1,0,")));
+}
+
+TEST(ExperimentCommand, SaysOnlyWhatFiguresRead) {
+  const ProcessResult list = run_vantage({"experiment", "--list"});
+  const auto line_after = [&list](const std::string& title) {
+    const std::size_t begin = list.out.find('\n', list.out.find(title)) + 1;
+    return list.out.substr(begin, list.out.find('\n', begin) - begin);
+  };
+  EXPECT_THAT(line_after("The pair kids and its disparity maps"),
+              AllOf(HasSubstr("methods gradient"), Not(HasSubstr("iterations"))));
+  EXPECT_THAT(line_after("The membrane model"), HasSubstr("iterations 5, 10"));
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      run_vantage({"experiment", "6.9", "6.11", "-o", folder / "o", "--iterations", "1", "--beta",
+                   "0.2", "--report", folder / "r.json", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto report = nlohmann::json::parse(read_file(folder / "r.json"));
+  EXPECT_EQ(report["results"]["6.9"]["settings"], "iterations 1; beta 0.2");
+  EXPECT_EQ(report["results"]["6.11"]["settings"], "");
+}
+
 class ExperimentPhotographs : public PairTest {};
 
 TEST_F(ExperimentPhotographs, TakeThePlaceOfGeneratedScenes) {
@@ -148,6 +199,14 @@ TEST(InputExperimentCommand, BadInputIsOneLineAndExit2) {
       {{"6.16", "-o", out, "--noise", "-1"}, "noise is -1"},
       {{"6.9", "-o", out, "--size", "40"}, "--size has no effect"},
       {{"6.9", "-o", out, "--mu", "0.4"}, "--mu has no effect"},
+      {{"6.9", "-o", out, "--lambda", "0.1"}, "--lambda has no effect: the figures do not read it"},
+      {{"5.2", "-o", out, "--aggregation-sigma", "1"},
+       "--aggregation-sigma has no effect: the figures do not read it"},
+      {{"6.11", "-o", out, "--mu", "0.4"}, "--mu has no effect: the figures do not read it"},
+      {{"6.5", "-o", out, "--iterations", "2"}, "--iterations has no effect"},
+      {{"3.4", "3.6", "5.11", "3.2.6-times", "-o", out, "--iterations", "2"},
+       "--iterations has no effect"},
+      {{"6.10", "-o", out, "--methods", "ssd", "--iterations", "2"}, "--iterations has no effect"},
       {{"6.16", "-o", out, "--left", "a.png", "--right", "b.png"}, "--left has no effect"},
       {{"3.9", "-o", out, "--left", "a.png"}, "--right is missing"},
       {{"3.9", "-o", out, "--left", "a.png", "--right", "b.png", "--seed", "2"},

@@ -113,6 +113,8 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
        "uniform-contrast is set but has no effect with a fill other than canonical and thin-plate"},
       {{"--depth-resolution", folder_ / "z.npy"},
        "--depth-resolution needs --calibration or --focal-length"},
+      {{"--disparity-resolution", "1"},
+       "--disparity-resolution has no effect without --depth-resolution and --report"},
       {{"--baseline", "2"}, "--baseline has no effect without --focal-length or --calibration"},
       {{"--focal-length", "0"}, "focal-length is 0, expected a number above 0"},
       {{"--focal-length", "9", "--calibration", left_}, "expected one of both"},

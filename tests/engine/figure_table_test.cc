@@ -81,7 +81,8 @@ TEST(FigureSettings, RefusesWhatNoFigureReads) {
   EXPECT_THAT(refusal_of(support, mu), HasSubstr("--mu has no effect"));
   EXPECT_EQ(refusal_of(both, mu), "");
   mu.methods = {"ssd"};
-  EXPECT_THAT(refusal_of(both, mu), HasSubstr("none of the methods membrane, ssd reads it"));
+  EXPECT_THAT(refusal_of(both, mu),
+              HasSubstr("the figures do not read it, with methods membrane, ssd"));
   EXPECT_THAT(refusal_of(both, {.size_px = 3}), HasSubstr("size is 3"));
   EXPECT_THAT(refusal_of(both, {.methods = {"guess"}}), HasSubstr("'guess' is unknown"));
 }
