@@ -85,6 +85,19 @@ TEST(MethodParameters, OverridesGoBeforePresetsBeforeTheBook) {
   EXPECT_EQ(options.resolved_refinement().cross_check_px, *preset.refinement.cross_check_px);
 }
 
+TEST(MethodParameters, PresetsSearchAsManyPixelsWithCandidatesBetweenThem) {
+  MatchOptions options;
+  options.preset = MatchPreset::kBalanced;
+  const int blocks = options.resolved().candidate_blocks;
+  ASSERT_EQ(blocks, 3);
+  options.parameters.candidate_step_px = 0.5;
+  EXPECT_EQ(options.resolved().candidate_blocks, 2 * blocks);
+  options.parameters.candidate_step_px = 0.25;
+  EXPECT_EQ(options.resolved().candidate_blocks, kMaxCandidateBlocks);
+  options.parameters.candidate_blocks = 2;
+  EXPECT_EQ(options.resolved().candidate_blocks, 2);
+}
+
 TEST(MethodParameters, CostFollowsTheAggregationUnlessItIsSet) {
   MatchOptions options;
   options.parameters.aggregation = Aggregation::kBayes;

@@ -240,6 +240,11 @@ MethodParameters MatchOptions::resolved() const {
   if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
     result.candidate_blocks = 0;
   }
+  if (!parameters.candidate_blocks) {
+    // A block is a number of candidates: the same disparities in pixels need more blocks.
+    result.candidate_blocks =
+        std::min(kMaxCandidateBlocks, result.candidate_blocks * steps_per_px(result));
+  }
   if (!parameters.slant_penalty && disparities_y) {
     result.slant_penalty = std::numeric_limits<double>::infinity();
   }
