@@ -14,8 +14,13 @@ namespace vantage::python {
 namespace py = pybind11;
 
 MatchResult::MatchResult(const PairMatcher& matcher, Execution& execution, MatchedImages images,
-                         Wanted wanted, std::shared_ptr<const UnrectifiedPairs> unrectified)
-    : execution_(execution), images_(std::move(images)), unrectified_(std::move(unrectified)) {
+                         Wanted wanted, std::shared_ptr<const UnrectifiedPairs> unrectified,
+                         std::shared_ptr<SpareMaps> spare)
+    : execution_(execution),
+      images_(std::move(images)),
+      unrectified_(std::move(unrectified)),
+      spare_(std::move(spare)) {
+  computed_.maps = spare_->take();
   computed_.options = matcher.options();
   computed_.on_photographs = unrectified_ && !unrectified_->on_rectified();
   if (wanted.other && !images_.is_pair()) {

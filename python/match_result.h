@@ -13,6 +13,7 @@
 #include "engine/vantage.h"
 #include "python/matched_images.h"
 #include "python/metres.h"
+#include "python/spare_maps.h"
 #include "python/unrectified_pairs.h"
 
 namespace vantage::python {
@@ -57,11 +58,20 @@ struct ComputedMaps {
 class MatchResult {
  public:
   /// `unrectified`: what matches the images instead of `matcher`, with its options; null: nothing.
+  /// `spare`: takes the memory of the maps and gets it back.
   MatchResult(const PairMatcher& matcher, Execution& execution, MatchedImages images, Wanted wanted,
-              std::shared_ptr<const UnrectifiedPairs> unrectified);
+              std::shared_ptr<const UnrectifiedPairs> unrectified,
+              std::shared_ptr<SpareMaps> spare);
   /// Of maps that have been computed.
   MatchResult(Execution& execution, MatchedImages images, ComputedMaps computed)
       : execution_(execution), images_(std::move(images)), computed_(std::move(computed)) {}
+  MatchResult(const MatchResult&) = delete;
+  MatchResult& operator=(const MatchResult&) = delete;
+  ~MatchResult() {
+    if (spare_) {
+      spare_->give(std::move(computed_.maps));
+    }
+  }
 
   pybind11::array_t<float> disparity(const pybind11::object& self) const;
   pybind11::object disparity_y(const pybind11::object& self) const;
@@ -114,6 +124,7 @@ class MatchResult {
   Execution& execution_;
   MatchedImages images_;
   std::shared_ptr<const UnrectifiedPairs> unrectified_;  ///< null: pairs are rectified
+  std::shared_ptr<SpareMaps> spare_;                     ///< null: none
   ComputedMaps computed_;
 };
 

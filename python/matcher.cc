@@ -95,7 +95,7 @@ std::unique_ptr<MatchResult> Matcher::compute(const ImageArguments& arguments,
   check(arguments);
   check_unrectified(arguments, wanted);
   return std::make_unique<MatchResult>(matcher_, *setup_.execution, arguments.images(), wanted,
-                                       unrectified_);
+                                       unrectified_, spare_);
 }
 
 py::dict Matcher::options() {

@@ -59,6 +59,7 @@ class Matcher {
   MatchSetup setup_;
   PairMatcher matcher_;
   std::shared_ptr<const UnrectifiedPairs> unrectified_;  ///< null: pairs are rectified
+  std::shared_ptr<SpareMaps> spare_ = std::make_shared<SpareMaps>();
   std::optional<std::string> pair_option_;  ///< an option that is given, for pairs only
 };
 

@@ -127,3 +127,28 @@ def test_options_are_checked():
 def test_no_range(pair):
     with pytest.raises(vantage.Error, match="no disparity range can be estimated"):
         vantage.Matcher().compute(np.zeros_like(pair[0]), np.zeros_like(pair[1]))
+
+
+def test_results_never_share_memory_that_is_in_use(pair):
+    """Memory of results that are gone is used again; arrays keep theirs."""
+    left, right = pair
+    matcher = vantage.Matcher(disparities=(0, 15))
+    small = left[:50, :70], right[:50, :70]
+    expected = [vantage.Matcher(disparities=(0, 15)).compute(*images)
+                for images in (pair, small)]
+    kept = []
+    for number in range(6):
+        which = number % 2
+        result = matcher.compute(*(pair, small)[which], confidence=number == 3)
+        if number == 2:
+            result.right_disparity  # as a later one must not have it
+        kept.append((which, result.disparity, result.unmatched))
+        if number % 3 == 0:
+            kept.pop(0)
+        del result
+    for which, disparity, unmatched in kept:
+        assert same(disparity, expected[which].disparity)
+        assert same(unmatched, expected[which].unmatched)
+    again = matcher.compute(left, right)
+    assert same(again.right_disparity, expected[0].right_disparity)
+    assert same(again.confidence, expected[0].confidence)
