@@ -15,7 +15,7 @@ double noise_in_force(double noise_sigma, const std::string& pair);
 /// The runs that settings ask for, with `more` parameters; empty when stopped.
 std::vector<ComparisonRun> runs_of(const FigureRun& run, const MethodOverrides& more = {});
 
-/// Of a table; empty for methods that are not iterative.
+/// The cell `iterations` of a table; empty for methods that are not iterative.
 std::string iterations_field(const std::string& method, int iterations);
 
 /// Whether two runs differ in nothing but iterations.

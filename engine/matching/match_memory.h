@@ -14,7 +14,7 @@ namespace vantage {
 struct MatchSize {
   scheduler::Extent image;
   int channels = 1;
-  /// Of the partners, for several cameras, see SequenceOptions::baselines.
+  /// Positions of the other cameras, as in SequenceOptions::baselines; empty: a pair.
   std::span<const double> baselines = {};
   bool along_lines = false;  ///< of photographs that are not rectified: UnrectifiedMatcher
   std::size_t level_bytes = kDefaultLevelBytes;  ///< ExecutionOptions::level_memory_bytes

@@ -38,7 +38,7 @@ class PairMatcher {
                              const MatchRequest& request, DisparityMaps& maps,
                              MatchReport* report = nullptr) const;
 
-  /// The same for the map of options().reference alone, whose memory is reused.
+  /// Computes only the map of options().reference. Reuses the memory of that map.
   MatchOptions match(const Photograph& left, const Photograph& right, MatchedMap& map,
                      MatchReport* report = nullptr) const;
 

@@ -32,7 +32,7 @@ class LevelVolume {
     bytes_.resize(extent_.columns, rows.size(), lanes_ * cell_bytes_);
   }
 
-  /// Of the level, whatever rows are held.
+  /// Size of the whole level, even if only some of its rows are held.
   [[nodiscard]] scheduler::Extent extent() const { return extent_; }
   [[nodiscard]] int lanes() const { return lanes_; }
   [[nodiscard]] int cell_bytes() const { return cell_bytes_; }
