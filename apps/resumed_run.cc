@@ -33,7 +33,8 @@ constexpr const char* kMergePart = "merge";  // of 'vantage merge', which comput
 
 /// The part of a name of RunSession::part_name(); other names are of the whole run.
 RunPart part_of(const std::string& name) {
-  static const std::regex form("(?:frames-([0-9]+)-([0-9]+))?-?(?:([0-9]+)-of-([0-9]+))?");
+  static const std::regex form(
+      "(?:frames-([0-9]{1,9})-([0-9]{1,9}))?-?(?:([0-9]{1,9})-of-([0-9]{1,9}))?");
   RunPart part;
   std::smatch numbers;
   if (std::regex_match(name, numbers, form)) {

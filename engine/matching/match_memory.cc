@@ -61,9 +61,11 @@ std::string memory_obstacle(const ResolvedMatchOptions& options, const MatchSize
   const auto gib = [](std::size_t of_bytes) { return static_cast<double>(of_bytes) / (1 << 30); };
   return fmt::format(
       "{}x{} pixels with {} disparities need about {:.1f} GiB of memory, expected no more than the "
-      "{:.1f} GiB of this machine: match tiles or fewer disparities, or use the preset realtime",
+      "{:.1f} GiB of this machine: match tiles or fewer disparities{}",
       size.image.columns, size.image.rows, options.disparities.count(), gib(bytes),
-      gib(machine_bytes));
+      gib(machine_bytes),
+      // Which searches several images, or along lines, at full size.
+      size.baselines.empty() && !size.along_lines ? ", or use the preset realtime" : "");
 }
 
 }  // namespace vantage

@@ -143,6 +143,11 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
   times = {};
   StageClock clock(times);
   clock.start("prepare");
+  std::vector<double> baselines;
+  for (const OtherView& other : others) {
+    baselines.push_back(other.baseline);
+  }
+  require_memory(reference, false, baselines);
   const auto prepared = parts_->prepared.borrow();
   prepared->parameters = in_force_.parameters;
   prepared->parameters.window_levels = 0;  // windows compare two images

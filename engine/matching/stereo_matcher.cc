@@ -262,11 +262,13 @@ MapToRefine StereoMatcher::to_refine(const MapTask& task, bool is_result) const 
 }
 
 /// Throws Error where a match cannot succeed. keeps_costs: for the pair after it.
-void StereoMatcher::require_memory(const Photograph& image, bool keeps_costs) const {
+void StereoMatcher::require_memory(const Photograph& image, bool keeps_costs,
+                                   std::span<const double> baselines) const {
   const std::string obstacle = memory_obstacle(
       in_force_,
       {.image = {image.width(), image.height()},
        .channels = image.channels(),
+       .baselines = baselines,
        .level_bytes = keeps_costs
                           ? kWithoutBands
                           : execution_.options().level_memory_bytes.value_or(kDefaultLevelBytes)},
@@ -407,6 +409,9 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
     }
     bytes += held_bytes(prepared.coarse_winners[0]) + held_bytes(prepared.coarse_winners[1]) +
              held_bytes(prepared.check_px[0]) + held_bytes(prepared.check_px[1]);
+    for (const MatchedMap& map : prepared.partner_maps) {
+      bytes += held_bytes(map.disparity_px);
+    }
     use.add("prepared images", bytes);
     use.add("coarse levels", prepared.search.levels.held_bytes());
     use.add("prepared images", prepared.halves[0].held_bytes() + prepared.halves[1].held_bytes());

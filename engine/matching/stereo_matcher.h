@@ -112,7 +112,8 @@ class StereoMatcher {
   [[nodiscard]] bool uses_check_maps(scheduler::Extent image) const;
   [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
                                                   scheduler::Extent image) const;
-  void require_memory(const Photograph& image, bool keeps_costs) const;
+  void require_memory(const Photograph& image, bool keeps_costs,
+                      std::span<const double> baselines = {}) const;
   void require_reuse(const MatchRequest& request, bool uses_prior) const;
   [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
   void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared,

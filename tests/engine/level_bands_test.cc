@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "engine/image/memory_use.h"
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/match_memory.h"
@@ -119,6 +121,11 @@ TEST(LevelBands, EstimateTellsWhatDoesNotFit) {
   EXPECT_GT(
       matching_bytes(options(MatchPreset::kRealtime), {.image = size.image, .along_lines = true}),
       matching_bytes(options(MatchPreset::kRealtime), size) + 16 * kGiB);
+  // Several images are searched at full size, too.
+  const std::vector<double> baselines = {1, 0.5};
+  EXPECT_THAT(memory_obstacle(options(MatchPreset::kRealtime),
+                              {.image = size.image, .baselines = baselines}, 6 * kGiB),
+              testing::EndsWith("of this machine: match tiles or fewer disparities"));
   // Without bands.
   EXPECT_GT(matching_bytes(options(MatchPreset::kBalanced),
                            {.image = size.image, .level_bytes = 100 * kGiB}),
