@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/error.h"
 #include "engine/thread_placement.h"
@@ -48,8 +49,9 @@ Execution::Execution(const ExecutionOptions& options) : options_(options) {
   options_.validate();
   const scheduler::Topology topology = scheduler::detect_topology();
   machine_ = topology.machine;
-  executor_ = scheduler::interruptible(
-      scheduler::make_executor(options_.executor, thread_places(options_, topology)));
+  auto executor = scheduler::make_executor(options_.executor, thread_places(options_, topology));
+  threads_ = std::make_unique<scheduler::SharedThreads>(executor->thread_count());
+  executor_ = scheduler::interruptible(scheduler::sharing(std::move(executor), *threads_));
 }
 
 void Execution::for_each_band(int rows,

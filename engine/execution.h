@@ -9,6 +9,7 @@
 #include "scheduler/executor.h"
 #include "scheduler/machine.h"
 #include "scheduler/scratch_pool.h"
+#include "scheduler/shared_threads.h"
 
 namespace vantage {
 
@@ -40,8 +41,9 @@ struct ExecutionOptions {
 int thread_count(const ExecutionOptions& options, const scheduler::Machine& machine);
 
 /// Threads, scratch memory and machine properties that matchers and synthesisers share. Must
-/// outlive everything that uses it. Thread rule: several frames may use it at once; its threads are
-/// then shared. A scheduler::InterruptibleScope ends its loops early.
+/// outlive everything that uses it. Thread rule: several threads may use it at once. Their loops
+/// share its threads. Callers that hold a scheduler::SharedThreads::Call are counted among these
+/// threads, between loops as well. A scheduler::InterruptibleScope ends its loops early.
 class Execution {
  public:
   /// Throws UsageError for invalid options.
@@ -51,6 +53,8 @@ class Execution {
   [[nodiscard]] const scheduler::Machine& machine() const { return machine_; }
   [[nodiscard]] scheduler::Executor& executor() { return *executor_; }
   [[nodiscard]] scheduler::ScratchPool& scratch() { return scratch_; }
+  /// For calls of several threads: none works without one of the execution's threads.
+  [[nodiscard]] scheduler::SharedThreads& threads() { return *threads_; }
 
   /// Calls body(first_row, end_row) in parallel for bands that cover [0, rows) exactly. For row
   /// work without cells (refinement, warping). Bands do not depend on the number of threads.
@@ -59,6 +63,7 @@ class Execution {
  private:
   ExecutionOptions options_;
   scheduler::Machine machine_;
+  std::unique_ptr<scheduler::SharedThreads> threads_;
   std::unique_ptr<scheduler::Executor> executor_;
   scheduler::ScratchPool scratch_;
 };

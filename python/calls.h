@@ -18,8 +18,8 @@ bool has_raised_signal();
 /// Throws the exception of that handler.
 [[noreturn]] void raise_interruption();
 
-/// Runs `work`, which touches no Python object, without the GIL. Ctrl-C in the main thread ends the
-/// loops of executions in it.
+/// Runs `work`, which touches no Python object and computes little, without the GIL. Ctrl-C in the
+/// main thread ends loops of executions in it.
 template <typename Work>
 auto without_gil(const Work& work) {
   try {
@@ -29,6 +29,16 @@ auto without_gil(const Work& work) {
   } catch (const scheduler::Interrupted&) {
     raise_interruption();
   }
+}
+
+/// Like without_gil(), for work on `execution`: calls of more threads than it has wait for each
+/// other. Ctrl-C in the main thread ends the wait, too.
+template <typename Work>
+auto on_threads_of(Execution& execution, const Work& work) {
+  return without_gil([&] {
+    const scheduler::SharedThreads::Call call(execution.threads());
+    return work();
+  });
 }
 
 /// The path that an object stands for (str, bytes, pathlib.Path). Throws TypeError.

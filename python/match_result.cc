@@ -26,7 +26,7 @@ MatchResult::MatchResult(const PairMatcher& matcher, Execution& execution, Match
   if (wanted.other && !images_.is_pair()) {
     throw UsageError("right_disparity cannot be had of several images: the first one has a map");
   }
-  without_gil([&] { match(matcher, images_.read(), wanted, computed_); });
+  on_threads_of(execution_, [&] { match(matcher, images_.read(), wanted, computed_); });
 }
 
 void MatchResult::match(const PairMatcher& matcher, const std::vector<Photograph>& photographs,
@@ -65,8 +65,9 @@ void MatchResult::require(Wanted wanted, const char* asked_for) {
   }
   const PairMatcher matcher(computed_.options, execution_);
   ComputedMaps rest;
-  without_gil(
-      [&] { match(matcher, images_.read_again(asked_for), computed_.has.with(wanted), rest); });
+  on_threads_of(execution_, [&] {
+    match(matcher, images_.read_again(asked_for), computed_.has.with(wanted), rest);
+  });
   // Another thread may have been faster meanwhile, and arrays then show its maps.
   if (wanted.other && !computed_.has.other) {
     const Side other = side() == Side::kLeft ? Side::kRight : Side::kLeft;
@@ -99,7 +100,7 @@ const CyclopeanMap& MatchResult::require_cyclopean(const char* asked_for) {
   if (!computed_.cyclopean) {
     require({.other = side() == Side::kRight}, asked_for);
     CyclopeanMap made;
-    without_gil([&] { make_cyclopean_map(computed_.maps.left, execution_, made); });
+    on_threads_of(execution_, [&] { make_cyclopean_map(computed_.maps.left, execution_, made); });
     if (!computed_.cyclopean) {
       computed_.cyclopean.emplace(std::move(made));
     }
@@ -182,7 +183,7 @@ py::array MatchResult::depth(const std::optional<StereoCalibration>& calibration
                              const py::dict& keywords) const {
   require_rectified("depth");
   const MetricOptions options = metric_options(MetricOutput::kDepth, keywords);
-  return array_of(without_gil([&] {
+  return array_of(on_threads_of(execution_, [&] {
     const MetricCamera camera =
         metric_camera(metric_map(), cameras(calibration), options, MetricOutput::kDepth);
     return depths(metric_map(), camera, options, execution_);
@@ -194,7 +195,7 @@ py::array MatchResult::depth_resolution(const std::optional<StereoCalibration>& 
   require_rectified("depth_resolution");
   const MetricOptions options = metric_options(MetricOutput::kDepthResolution, keywords);
   const bool has_fractions = computed_.options.resolved().subpixel != Subpixel::kNone;
-  return array_of(without_gil([&] {
+  return array_of(on_threads_of(execution_, [&] {
     const MetricCamera camera =
         metric_camera(metric_map(), cameras(calibration), options, MetricOutput::kDepthResolution);
     return depth_resolutions(metric_map(), camera, options, has_fractions ? 0.1 : 1, execution_);
@@ -211,7 +212,7 @@ auto MatchResult::make_points(const std::optional<StereoCalibration>& calibratio
   if (options.cloud.reads_confidence()) {
     require({.confidence = true}, "confidence");
   }
-  return without_gil([&] {
+  return on_threads_of(execution_, [&] {
     const std::vector<Photograph> photographs = images_.read_again("the colours of points");
     const Photograph* colours = &photographs[images_.reference(side())];
     Photograph rectified;

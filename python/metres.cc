@@ -120,7 +120,7 @@ py::array to_metres(MetricOutput output, const py::object& disparity,
   const MetricOptions options = metric_options(output, keywords);
   const DisparityMap map = map_from(disparity, "disparity");
   const MetricMap source{.disparity_px = map.view(), .side = side};
-  return array_of(without_gil([&] {
+  return array_of(on_threads_of(execution, [&] {
     const MetricCamera camera = metric_camera(source, calibration, options, output);
     return output == MetricOutput::kDepth
                ? depths(source, camera, options, execution)
@@ -152,7 +152,7 @@ class MapArrays {
   /// Calls make(source, options, execution) without the GIL.
   template <typename Make>
   auto with_source(const Calibration& calibration, const Make& make) const {
-    return without_gil([&] {
+    return on_threads_of(execution_, [&] {
       const Photograph photograph = image_.photograph();
       const MetricCamera camera = metric_camera({.disparity_px = map_.view(), .side = side_},
                                                 calibration, options_, MetricOutput::kPoints);
@@ -200,7 +200,7 @@ py::array to_points(const py::object& disparity, const StereoCalibration& calibr
   if (!calibration.is_rectified) {
     throw Error("the calibration is not one of rectified images, expected that of rectify()");
   }
-  return array_of(without_gil([&] {
+  return array_of(on_threads_of(execution, [&] {
     Image<float> points;
     reproject(map.view(), map_camera(rectified_pair(calibration, map.width(), map.height()), side),
               kNoMaxDepth, execution, points);

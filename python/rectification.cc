@@ -79,7 +79,7 @@ py::tuple to_rectify(const py::object& left, const py::object& right,
   const PixelArray right_pixels(right, order, "right");
   left_pixels.warn_of_range();
   right_pixels.warn_of_range();
-  RectifiedImages result = without_gil([&] {
+  RectifiedImages result = on_threads_of(execution, [&] {
     return rectify(left_pixels.copy(), right_pixels.copy(), calibration, options, execution);
   });
   return py::make_tuple(

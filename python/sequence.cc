@@ -287,7 +287,7 @@ class Sequence {
     if (job.input.stereo == "-") {
       throw UsageError("stereo is -, expected a file: 'vantage run' reads standard input");
     }
-    without_gil([&] { open(calibration, *opened_); });
+    on_threads_of(*opened_->execution, [&] { open(calibration, *opened_); });
   }
 
   [[nodiscard]] int count() const { return opened_->session.selection.frame_count; }

@@ -94,7 +94,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
     pair.maps.right.disparity_px = map_from(right_map, "right_disparity");
   }
   std::vector<ViewPose> poses = apps::poses_of(setup.views);
-  std::vector<Photograph> images = without_gil([&] {
+  std::vector<Photograph> images = on_threads_of(execution, [&] {
     pair.left = left_pixels.copy();
     pair.right = right_pixels.copy();
     require_equal_shapes(pair.left, pair.right);

@@ -118,7 +118,7 @@ py::tuple Matcher::volume(const ImageArguments& arguments, const py::dict& keywo
   apps::check_volume(output, setup_.options, settings);
   MatchedImages images = arguments.images();
   MemoryVolume volume(output.rows, max_bytes);
-  without_gil([&] {
+  on_threads_of(*setup_.execution, [&] {
     const Side side = images.side(setup_.options.reference);
     const VolumeRequest request{side, output.kind, output.level, &volume};
     DisparityMaps maps;

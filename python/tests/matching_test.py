@@ -113,6 +113,8 @@ def test_options_are_checked():
         vantage.Matcher(cross_chek=2)
     with pytest.raises(ValueError, match="preset is 3"):
         vantage.Matcher(preset=3)
+    with pytest.raises(ValueError, match="method and preset are both set"):
+        vantage.Matcher("balanced", method="ssd")
     with pytest.raises(ValueError, match="window is of type object"):
         vantage.Matcher(window=object())
     with pytest.raises(ValueError, match="unknown option 'report'"):

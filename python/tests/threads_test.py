@@ -82,6 +82,33 @@ def test_ctrl_c_interrupts():
     assert time.monotonic() - start < 10
 
 
+WAITING = """
+import os, sys, threading, numpy as np, vantage
+image = np.random.default_rng(1).integers(0, 256, (800, 1200, 3), np.uint8)
+slow = vantage.Matcher(method="diffusion", disparities=(0, 255), iterations=2000, threads=1)
+quick = vantage.Matcher("realtime", (0, 15), threads=1)
+threading.Thread(target=slow.compute, args=(image, image)).start()
+print("ready", flush=True)
+try:
+    while True:
+        quick.compute(image, image)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    os._exit(0)  # the other thread has a long way to go
+"""
+
+
+def test_ctrl_c_ends_waiting_for_a_thread():
+    process = subprocess.Popen([sys.executable, "-c", WAITING], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "ready\n"
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    try:
+        assert process.communicate(timeout=30)[0] == "interrupted\n"
+    finally:
+        process.kill()
+
+
 def test_signals_interrupt_estimating_cameras():
     left, right = unrectified_pair()
 

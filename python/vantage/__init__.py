@@ -30,15 +30,11 @@ __all__ = [
 
 _loops = _weakref.WeakSet()
 
-# The values of these options that leave the choice to the preset.
-_WITHOUT_METHOD = {"method": "auto", "aggregate": "auto", "disparities_y": "none"}
-
-
 class Matcher:
     """Matches rectified pairs, as `vantage match` does.
 
-    preset: "realtime", "fast", "balanced" or "quality"; None: that of the other options, as without
-    --preset on the command line.
+    preset: "realtime", "fast", "balanced" or "quality"; None: "balanced", unless options choose a
+    method (method, aggregate, disparities_y).
     disparities: (MIN, MAX) or "MIN:MAX" in pixels, ends included; "auto": estimated for each pair.
     options: those of `vantage match` that concern matching, reference and threads.
     unrectified: Calibration or a path, of photographs that are not rectified: epipolar lines are
@@ -49,13 +45,8 @@ class Matcher:
     Several threads may use one matcher at a time. Processes get it by its options (pickle).
     """
 
-    def __init__(self, preset="balanced", disparities="auto", *, unrectified=None,
+    def __init__(self, preset=None, disparities="auto", *, unrectified=None,
                  rectified_pixels=False, **options):
-        # A method is another choice than a preset.
-        if preset == "balanced" and any(
-                not (options.get(name) is None or str(options[name]) == value)
-                for name, value in _WITHOUT_METHOD.items()):
-            preset = None
         self._set(_calibration_of(unrectified), bool(rectified_pixels),
                   {"preset": preset, "disparities": disparities, **options})
 

@@ -44,7 +44,7 @@ class StereoVantage:
 
     def __init__(self, minDisparity=0, numDisparities=16, blockSize=3, P1=0, P2=0,
                  disp12MaxDiff=0, preFilterCap=0, uniquenessRatio=0, speckleWindowSize=0,
-                 speckleRange=0, mode=0, *, preset="balanced", **options):
+                 speckleRange=0, mode=0, *, preset=None, **options):
         self._options = {"fill": "none", **options, "preset": preset}
         self._values = {}
         self._told = set()
