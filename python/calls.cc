@@ -1,6 +1,8 @@
 #include "python/calls.h"
 
+#include <chrono>
 #include <exception>
+#include <thread>
 
 #include "engine/error.h"
 
@@ -8,19 +10,26 @@ namespace vantage::python {
 namespace py = pybind11;
 namespace {
 
-unsigned long main_thread() {
-  return py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
-}
+// Set when the module is imported.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
+unsigned long main_thread = 0;
 
 }  // namespace
 
+ReleasedGil::~ReleasedGil() {
+  try {
+    PyEval_RestoreThread(thread_);
+  } catch (...) {
+    // Python unwinds such a thread to end it, which must not pass through destructors.
+    while (true) {
+      std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+  }
+}
+
 bool has_raised_signal() {
   // Only the main thread runs signal handlers.
-  static const unsigned long main = [] {
-    const py::gil_scoped_acquire acquire;
-    return main_thread();
-  }();
-  if (PyThread_get_thread_ident() != main) {
+  if (PyThread_get_thread_ident() != main_thread) {
     return false;
   }
   const py::gil_scoped_acquire acquire;
@@ -34,7 +43,9 @@ std::string path_of(const py::object& path) {
   return py::module_::import("os").attr("fsdecode")(text).cast<std::string>();
 }
 
-void bind_errors(py::module_& module) {
+void bind_calls(py::module_& module) {
+  main_thread =
+      py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
   // Kept for as long as the interpreter lives.
   static PyObject* const error =
       PyErr_NewExceptionWithDoc("vantage.Error",

@@ -18,12 +18,25 @@ bool has_raised_signal();
 /// Throws the exception of that handler.
 [[noreturn]] void raise_interruption();
 
+/// Without the GIL while it lives. A thread that comes back after the interpreter has begun to end,
+/// as daemon threads do, waits here until the process is gone.
+class ReleasedGil {
+ public:
+  ReleasedGil() : thread_(PyEval_SaveThread()) {}
+  ReleasedGil(const ReleasedGil&) = delete;
+  ReleasedGil& operator=(const ReleasedGil&) = delete;
+  ~ReleasedGil();
+
+ private:
+  PyThreadState* thread_;
+};
+
 /// Runs `work`, which touches no Python object and computes little, without the GIL. Ctrl-C in the
 /// main thread ends loops of executions in it.
 template <typename Work>
 auto without_gil(const Work& work) {
   try {
-    const pybind11::gil_scoped_release release;
+    const ReleasedGil release;
     scheduler::InterruptibleScope scope(has_raised_signal);
     return work();
   } catch (const scheduler::Interrupted&) {
@@ -47,8 +60,8 @@ std::string path_of(const pybind11::object& path);
 /// A Calibration, that of a file if it is a path, or None. Throws Error, TypeError.
 std::optional<StereoCalibration> calibration_from(const pybind11::object& object);
 
-/// Registers vantage.Error and vantage.UsageError.
-void bind_errors(pybind11::module_& module);
+/// Registers vantage.Error and vantage.UsageError. Before calls of anything else.
+void bind_calls(pybind11::module_& module);
 void bind_calibration(pybind11::module_& module);
 void bind_files(pybind11::module_& module);
 void bind_match_result(pybind11::module_& module);

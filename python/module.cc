@@ -9,7 +9,7 @@ PYBIND11_MODULE(_vantage, module) {
   // cv2 may be in this process, with settings of its own.
   vantage::leave_opencv_to_host();
   module.attr("__version__") = VANTAGE_VERSION;
-  vantage::python::bind_errors(module);
+  vantage::python::bind_calls(module);
   vantage::python::bind_calibration(module);
   vantage::python::bind_rectification(module);
   vantage::python::bind_point_clouds(module);

@@ -123,7 +123,7 @@ class FrameLoop {
     without_gil([&] {
       source_ = opened_->take_source();
       run_.emplace(run_of_source());
-      frames_ = std::make_unique<FrameIterator>(opened_->job.sequence, *run_, frames,
+      frames_ = std::make_shared<FrameIterator>(opened_->job.sequence, *run_, frames,
                                                 *opened_->execution);
     });
   }
@@ -133,11 +133,13 @@ class FrameLoop {
 
   /// Attributes of a Frame; None at the end.
   py::object next() {
-    if (!frames_) {
+    // Kept while it is waited for: another thread may close the loop.
+    const std::shared_ptr<FrameIterator> frames = frames_;
+    if (!frames) {
       return py::none();
     }
-    std::optional<ComputedFrame> frame = without_gil([&] { return frames_->next(); });
-    if (!frame) {
+    std::optional<ComputedFrame> frame = without_gil([&] { return frames->next(); });
+    if (!frame || !frames_) {
       return py::none();
     }
     flicker_.add(frame->flicker);
@@ -145,12 +147,13 @@ class FrameLoop {
   }
 
   void close() {
-    if (!frames_) {
+    const std::shared_ptr<FrameIterator> frames = std::move(frames_);
+    if (!frames) {
       return;
     }
-    const py::gil_scoped_release release;
-    skipped_ = frames_->skipped();
-    frames_.reset();
+    skipped_ = frames->skipped();
+    const ReleasedGil release;
+    frames->stop();
     opened_->give_back(std::move(source_));
   }
 
@@ -204,13 +207,15 @@ class FrameLoop {
     Photograph& left = is_rectified ? slot.rectified[0] : slot.pair.left;
     Photograph& right = is_rectified ? slot.rectified[1] : slot.pair.right;
     std::pair<Photograph, Photograph> images;
+    // Before others may run, who may close the loop.
+    const std::string name = source_->describe(slot.frame);
     ComputedMaps computed = without_gil([&] {
       images = {copy_of(left), copy_of(right)};
       return maps_of(frame);
     });
     py::dict found;
     found["index"] = slot.frame;
-    found["name"] = source_->describe(slot.frame);
+    found["name"] = name;
     found["left"] = array_of(std::move(images.first), ChannelOrder::kRgb);
     found["right"] = array_of(std::move(images.second), ChannelOrder::kRgb);
     found["result"] = py::cast(std::make_unique<MatchResult>(
@@ -246,7 +251,7 @@ class FrameLoop {
   std::shared_ptr<OpenSequence> opened_;
   std::unique_ptr<PairSource> source_;
   std::optional<SequenceRun> run_;
-  std::unique_ptr<FrameIterator> frames_;  ///< null: closed
+  std::shared_ptr<FrameIterator> frames_;  ///< null: closed
   std::vector<FrameRemark> skipped_;
   FlickerSums flicker_;
 };

@@ -52,7 +52,13 @@ class FrameIterator::Work {
 
   Work(const Work&) = delete;
   Work& operator=(const Work&) = delete;
-  ~Work() {
+  ~Work() { stop(); }
+
+  void stop() {
+    const std::scoped_lock stopping(stopping_);
+    if (!thread_.joinable()) {
+      return;
+    }
     {
       const std::scoped_lock lock(mutex_);
       is_stopped_ = true;
@@ -67,6 +73,9 @@ class FrameIterator::Work {
       lock.unlock();
       scheduler::check_interruption();
       lock.lock();
+    }
+    if (is_stopped_) {
+      return std::nullopt;
     }
     if (ready_.empty()) {
       if (problem_) {
@@ -226,6 +235,7 @@ class FrameIterator::Work {
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   int next_pair_ = -1;  ///< the source may be anywhere at first
 
+  std::mutex stopping_;  ///< held while the thread is joined
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   // Guarded by it.
@@ -247,6 +257,8 @@ FrameIterator::FrameIterator(const SequenceOptions& options, const SequenceRun& 
 FrameIterator::~FrameIterator() = default;
 
 std::optional<ComputedFrame> FrameIterator::next() { return work_->next(); }
+
+void FrameIterator::stop() { work_->stop(); }
 
 std::vector<FrameRemark> FrameIterator::skipped() const { return work_->skipped(); }
 

@@ -28,7 +28,8 @@ struct ComputedFrame {
 /// those that wait for the caller are together at most `run.in_flight`, in the threads of the
 /// execution. No thread of that waits for the caller.
 ///
-/// Thread rule: one call at a time. Frames are identical for any Execution and in-flight count.
+/// Thread rule: one call at a time, but for stop(). Frames are identical for any Execution and
+/// in-flight count.
 class FrameIterator {
  public:
   /// `frames`: numbers of pairs, increasing; frames that they depend on are computed, too. Options
@@ -38,13 +39,15 @@ class FrameIterator {
                 const std::vector<int>& frames, Execution& execution);
   FrameIterator(const FrameIterator&) = delete;
   FrameIterator& operator=(const FrameIterator&) = delete;
-  /// Drops the frames that were computed ahead; those in work end early.
   ~FrameIterator();
 
   /// The next frame, empty at the end. Throws Error that names the frame at the first bad one,
   /// after all frames before it, unless `run.keep_going`; then there are no more frames. An
   /// InterruptibleScope ends the wait.
   std::optional<ComputedFrame> next();
+  /// Ends what is in work and drops what is ready; there are no more frames. next() of another
+  /// thread returns. Thread rule: any thread, beside next().
+  void stop();
   /// Frames that were left out so far, with `run.keep_going`.
   [[nodiscard]] std::vector<FrameRemark> skipped() const;
 

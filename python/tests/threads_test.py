@@ -82,6 +82,31 @@ def test_ctrl_c_interrupts():
     assert time.monotonic() - start < 10
 
 
+DAEMONS = """
+import sys, threading, time, vantage
+left, right = (vantage.read_image(f"{sys.argv[1]}/{side}.png") for side in ["left", "right"])
+matcher = vantage.Matcher("realtime", (0, 15))
+pairs = {"left": sys.argv[1] + "/left.png", "right": sys.argv[1] + "/right.png"}
+def compute():
+    while True:
+        matcher.compute(left, right)
+def loop():
+    while True:
+        for frame in vantage.Sequence(**pairs, disparities=(0, 15)):
+            frame.result.right_disparity
+for work in [compute, loop, compute, loop]:
+    threading.Thread(target=work, daemon=True).start()
+time.sleep(0.2)
+"""
+
+
+def test_daemon_threads_end_with_the_process(scene):
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-c", DAEMONS, scene], capture_output=True,
+                              text=True, timeout=60)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
 WAITING = """
 import os, sys, threading, numpy as np, vantage
 image = np.random.default_rng(1).integers(0, 256, (800, 1200, 3), np.uint8)
