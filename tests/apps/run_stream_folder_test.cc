@@ -174,11 +174,11 @@ TEST_F(RunStreamFolders, KeepWhatIsDoneWhenTheyAreStopped) {
   for (const bool kill : {true, false}) {
     fs::remove_all(out_);
     // The pipe stays open, so that the run waits for more, and has read all there is.
-    const std::string waits =
-        "until grep -qs 000005-000009 " + out_ +
-        "/.vantage/frames-all.jsonl; do sleep 0.02; done; python3 -c 'import array, fcntl, termios\n"
-        "unread = array.array(\"i\", [1])\n"
-        "while unread[0]: fcntl.ioctl(1, termios.FIONREAD, unread)'";
+    const std::string waits = "until grep -qs 000005-000009 " + out_ +
+                              "/.vantage/frames-all.jsonl; do sleep 0.02; done; python3 -c 'import "
+                              "array, fcntl, termios\n"
+                              "unread = array.array(\"i\", [1])\n"
+                              "while unread[0]: fcntl.ioctl(1, termios.FIONREAD, unread)'";
     const std::string process =
         "sh -c 'echo $$ >" + pid + "; exec env " +
         std::regex_replace(command(options("-", out_, kFilmOutputs)), std::regex("'"), "") + "'";
