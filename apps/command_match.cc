@@ -67,6 +67,56 @@ void rectify(const MatchJob& job, const DepthGeometry& geometry, std::vector<Pho
   });
 }
 
+Side side_of(const MatchJob& job) { return job.is_left() ? Side::kLeft : Side::kRight; }
+
+std::vector<Photograph> read_images(const MatchJob& job, RunReport& report) {
+  std::vector<Photograph> images;
+  for (const std::string& input : job.inputs()) {
+    images.push_back(report.timed_file_access("read", [&] { return read_photograph(input); }));
+  }
+  require_equal_sizes(job, images);
+  return images;
+}
+
+/// The images in the shape in which they are matched, and their cameras.
+struct MatchInputs {
+  MatchInputs(const MatchJob& job, Execution& execution, RunReport& report)
+      : images(read_images(job, report)),
+        size{images[0].width(), images[0].height()},
+        camera_geometry(job.depth, size.columns, size.rows, job.vertical),
+        camera(camera_geometry.camera(side_of(job))),
+        first_is_left(!job.has_several() || job.is_left()) {
+    rectify(job, camera_geometry, images, execution, report);
+    if (job.vertical) {
+      transpose(images);
+    }
+    require_volume_rows(job.volume, job.vertical ? images[0].width() : images[0].height());
+    if (!job.unrectified.empty()) {
+      rectifier.emplace(read_stereo_calibration(job.unrectified, job.depth.kitti_cameras),
+                        size.columns, size.rows);
+      for (const Side side : {Side::kLeft, Side::kRight}) {
+        rectifier->apply(images[index_of(side)], side, rectified[index_of(side)], execution);
+      }
+    }
+  }
+
+  /// A rectified pair, for what is estimated before the match.
+  [[nodiscard]] const Photograph& left() const {
+    return rectifier ? rectified[0] : images[first_is_left ? 0 : 1];
+  }
+  [[nodiscard]] const Photograph& right() const {
+    return rectifier ? rectified[1] : images[first_is_left ? 1 : 0];
+  }
+
+  std::vector<Photograph> images;
+  scheduler::Extent size;  ///< of the files
+  DepthGeometry camera_geometry;
+  std::optional<MapCamera> camera;  ///< of the map, if it is known
+  bool first_is_left;
+  std::optional<Rectifier> rectifier = std::nullopt;  ///< of --unrectified
+  std::array<Photograph, 2> rectified = {};           ///< by it
+};
+
 void match_images(const MatchJob& job, const StereoMatcher& matcher,
                   const std::vector<Photograph>& images, std::span<const VolumeRequest> volumes,
                   DisparityMaps& maps, MatchReport& report) {
@@ -115,18 +165,88 @@ MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps&
   return use;
 }
 
-AppliedTuning tuning_of(const MatchJob& job, bool is_unrectified, const Photograph& left,
-                        const Photograph& right, const Settings& settings) {
+AppliedTuning tuning_of(const MatchJob& job, const MatchInputs& inputs, const Settings& settings) {
   if (job.has_several()) {
     return no_tuning("tuning is for pairs, but there are more images");
   }
-  if (is_unrectified) {
+  if (inputs.rectifier) {
     return no_tuning("tuning is for rectified pairs");
   }
-  return apply_tuning(
-      job.tuning,
-      {.match = job.match, .execution = job.common.execution, .left = left, .right = right},
-      settings.command(), job.common.quiet);
+  return apply_tuning(job.tuning,
+                      {.match = job.match,
+                       .execution = job.common.execution,
+                       .left = inputs.left(),
+                       .right = inputs.right()},
+                      settings.command(), job.common.quiet);
+}
+
+/// What a match makes.
+struct Matched {
+  DisparityMaps maps;
+  CyclopeanMap cyclopean;
+  MatchReport report;
+};
+
+/// Matches, and warns of images and ranges that do not suit each other. `asked`: the options before
+/// the range was found.
+void compute_maps(const MatchJob& job, const Settings& settings, const MatchInputs& inputs,
+                  const MatchOptions& asked, const StereoMatcher& matcher,
+                  std::span<const VolumeRequest> volumes, Execution& execution, RunReport& report,
+                  Matched& matched) {
+  const auto compute = [&] {
+    report.timed_compute([&] {
+      if (inputs.rectifier) {
+        match_unrectified(job, *inputs.rectifier, inputs.images, execution, matched.maps,
+                          matched.report);
+      } else {
+        match_images(job, matcher, inputs.images, volumes, matched.maps, matched.report);
+      }
+    });
+  };
+  if (job.check_rectification && !job.match.disparities_y && !inputs.rectifier) {
+    warn_unless_rectified_beside(compute, settings, job.common, expects_negative_disparities(asked),
+                                 job.vertical ? "columns" : "rows", inputs.left(), inputs.right(),
+                                 execution, report);
+  } else {
+    compute();
+  }
+  if (!job.has_several() && !inputs.rectifier) {
+    warn_of_cut_range(settings, job.common, inputs.left(), inputs.right(), matched.maps, job.match,
+                      asked.disparities_auto, execution, report);
+  }
+  if (job.wants_cyclopean()) {
+    make_cyclopean_map(matched.maps.left, execution, matched.cyclopean);
+  }
+}
+
+/// Writes the maps, and all that is made of them. Returns what it wrote of depths.
+DepthFiles write_outputs(const MatchJob& job, const MatchInputs& inputs, const Matched& matched,
+                         SpaceOutputs& space, Execution& execution, RunReport& report) {
+  const Side side = side_of(job);
+  const MatchedMap& map = matched.maps.of(side);
+  const auto along_baseline_px =
+      (job.vertical && job.match.disparities_y ? map.disparity_y_px : map.disparity_px).view();
+  const std::optional<DepthScale> scale =
+      inputs.camera ? std::optional(inputs.camera->scale) : std::nullopt;
+  if (const auto disparities =
+          job.common.report.empty() ? std::nullopt : disparity_quantiles(along_baseline_px)) {
+    report.add_result("depth_resolution",
+                      depth_resolution_values(*disparities, scale, job.disparity_resolution_px()));
+  }
+  Image<float> depth_resolution;
+  if (!job.depth.resolution_file.empty()) {
+    depth_resolution_map(along_baseline_px, *scale, job.disparity_resolution_px(), execution,
+                         depth_resolution);
+  }
+  const Photograph& reference = inputs.images[job.has_several() ? 0 : index_of(side)];
+  DepthFiles depths =
+      depth_files(job, inputs.camera, reference, map, along_baseline_px, execution, report);
+  report.timed_file_access("write", [&] {
+    write_results(job, matched.maps, depth_resolution, depths);
+    write_space(job, space, report);
+    write_cyclopean(job, matched.cyclopean);
+  });
+  return depths;
 }
 
 /// Prints what was estimated.
@@ -176,113 +296,45 @@ int command_match(const Arguments& arguments) {
     return kExitDone;
   }
   check(job, settings);
-  const std::vector<std::string> inputs = job.inputs();
+  const std::vector<std::string> files = job.inputs();
   choose_kitti_cameras(
       settings, job.common, job.unrectified.empty() ? job.depth.calibration : job.unrectified,
-      std::vector<std::filesystem::path>(inputs.begin(), inputs.end()), job.depth.kitti_cameras);
+      std::vector<std::filesystem::path>(files.begin(), files.end()), job.depth.kitti_cameras);
   CommandWork work(settings, job.common, reported_settings(settings, job.match));
   RunReport& report = work.report;
-  Execution& execution = work.execution;
 
-  std::vector<Photograph> images;
-  for (const std::string& input : inputs) {
-    images.push_back(report.timed_file_access("read", [&] { return read_photograph(input); }));
-  }
-  require_equal_sizes(job, images);
-  const scheduler::Extent size{images[0].width(), images[0].height()};
-  const DepthGeometry geometry(job.depth, size.columns, size.rows, job.vertical);
-  const Side side = job.is_left() ? Side::kLeft : Side::kRight;
-  const std::optional<MapCamera> camera = geometry.camera(side);
-  rectify(job, geometry, images, execution, report);
-  if (job.vertical) {
-    transpose(images);
-  }
-  require_volume_rows(job.volume, job.vertical ? images[0].width() : images[0].height());
-  std::optional<Rectifier> rectifier;
-  std::array<Photograph, 2> rectified;  // for the search range
-  if (!job.unrectified.empty()) {
-    rectifier.emplace(read_stereo_calibration(job.unrectified, job.depth.kitti_cameras),
-                      size.columns, size.rows);
-    rectifier->apply(images[0], Side::kLeft, rectified[0], execution);
-    rectifier->apply(images[1], Side::kRight, rectified[1], execution);
-  }
-  const bool first_is_left = !job.has_several() || job.is_left();
-  const Photograph& left = rectifier ? rectified[0] : images[first_is_left ? 0 : 1];
-  const Photograph& right = rectifier ? rectified[1] : images[first_is_left ? 1 : 0];
-  const bool expects_negative = expects_negative_disparities(job.match);
-  const bool is_range_found = job.match.disparities_auto;
-  choose_disparities(settings, job.common, left, right, job.match, execution, report);
+  MatchInputs inputs(job, work.execution, report);
+  const MatchOptions asked = job.match;
+  choose_disparities(settings, job.common, inputs.left(), inputs.right(), job.match, work.execution,
+                     report);
   require_files_hold_search(job);
-  const AppliedTuning tuning = tuning_of(job, rectifier.has_value(), left, right, settings);
+  const AppliedTuning tuning = tuning_of(job, inputs, settings);
   report.set_tuning(tuning.report, tuning.summary);
   std::optional<Execution> tuned_execution;
   if (tuning.settings != TunedSettings{}) {
     tuned_execution.emplace(with_tuned(job.common.execution, tuning.settings));
     report.set_execution(*tuned_execution);
   }
-  Execution& chosen = tuned_execution ? *tuned_execution : execution;
-  const StereoMatcher matcher(job.match, chosen);
-  DisparityMaps maps;
-  MatchReport match;
-  SpaceOutputs space(job);
-  const std::vector<VolumeRequest> volumes = space.requests(job);
-  const auto compute = [&] {
-    report.timed_compute([&] {
-      if (rectifier) {
-        match_unrectified(job, *rectifier, images, chosen, maps, match);
-      } else {
-        match_images(job, matcher, images, volumes, maps, match);
-      }
-    });
-  };
-  if (job.check_rectification && !job.match.disparities_y && !rectifier) {
-    warn_unless_rectified_beside(compute, settings, job.common, expects_negative,
-                                 job.vertical ? "columns" : "rows", left, right, chosen, report);
-  } else {
-    compute();
-  }
-  if (!job.has_several() && !rectifier) {
-    warn_of_cut_range(settings, job.common, left, right, maps, job.match, is_range_found, chosen,
-                      report);
-  }
-  CyclopeanMap cyclopean;
-  if (job.wants_cyclopean()) {
-    make_cyclopean_map(maps.left, chosen, cyclopean);
-  }
-  if (job.vertical) {
-    transpose(maps);
-    transpose(cyclopean);
-  }
-  report.add_match(match);
-  report.set_memory(memory_use(images, maps, matcher, chosen));
-  // Along the baseline.
-  const MatchedMap& map = maps.of(side);
-  const auto along_px =
-      (job.vertical && job.match.disparities_y ? map.disparity_y_px : map.disparity_px).view();
-  const std::optional<DepthScale> scale = camera ? std::optional(camera->scale) : std::nullopt;
-  if (const auto disparities =
-          job.common.report.empty() ? std::nullopt : disparity_quantiles(along_px)) {
-    report.add_result("depth_resolution",
-                      depth_resolution_values(*disparities, scale, job.disparity_resolution_px()));
-  }
-  Image<float> depth_resolution;
-  if (!job.depth.resolution_file.empty()) {
-    depth_resolution_map(along_px, *scale, job.disparity_resolution_px(), chosen, depth_resolution);
-  }
-  if (job.vertical && job.depth.outputs.has_points()) {
-    transpose(images);
-  }
-  const Photograph& reference = job.has_several() ? images[0] : images[index_of(side)];
-  const DepthFiles depths = depth_files(job, camera, reference, map, along_px, chosen, report);
-  report.timed_file_access("write", [&] {
-    write_results(job, maps, depth_resolution, depths);
-    write_space(job, space, report);
-    write_cyclopean(job, cyclopean);
-  });
+  Execution& execution = tuned_execution ? *tuned_execution : work.execution;
 
+  const StereoMatcher matcher(job.match, execution);
+  Matched matched;
+  SpaceOutputs space(job);
+  compute_maps(job, settings, inputs, asked, matcher, space.requests(job), execution, report,
+               matched);
+  report.add_match(matched.report);
+  report.set_memory(memory_use(inputs.images, matched.maps, matcher, execution));
+  if (job.vertical) {
+    transpose(matched.maps);
+    transpose(matched.cyclopean);
+    if (job.depth.outputs.has_points()) {
+      transpose(inputs.images);
+    }
+  }
+  const DepthFiles depths = write_outputs(job, inputs, matched, space, execution, report);
   report.write(job.common.report);
   if (!job.common.quiet) {
-    print_results(job, size, match, depths, space);
+    print_results(job, inputs.size, matched.report, depths, space);
     report.print_summary();
   }
   return kExitDone;
