@@ -22,7 +22,7 @@
 
 namespace vantage {
 
-/// Wider than any search.
+/// Wider than any search; too wide for a surface fit.
 inline constexpr DisparityRange kAnyDisparity{-(1 << 20), 1 << 20};
 
 /// Map of one of several other images.

@@ -9,33 +9,34 @@
 namespace vantage {
 namespace {
 
-/// Resizes `map_px` to a map of this size with margins, and calls fill(y, row) for each row inside;
-/// what lies beyond has no surface.
+/// Resizes `samples` to a map of this size with margins, and calls fill(y, row) for each row
+/// inside; what lies beyond has no surface.
 template <typename Fill>
 void fill_with_margins(int width, int height, int margin, Execution& execution,
-                       Image<float>& map_px, const Fill& fill) {
+                       Image<std::int16_t>& samples, const Fill& fill) {
   const int after = margin + kernels::kSurfaceRowSlack;
-  map_px.resize(margin + width + after, margin + height + margin);
-  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
+  samples.resize(margin + width + after, margin + height + margin);
+  execution.for_each_band(samples.height(), [&](int first_row, int end_row) {
     for (int row = first_row; row < end_row; ++row) {
-      float* values = map_px.row(row);
+      std::int16_t* values = samples.row(row);
       const int y = row - margin;
       if (y < 0 || y >= height) {
-        std::fill_n(values, map_px.width(), kernels::kNoSurfacePx);
+        std::fill_n(values, samples.width(), kernels::kNoSurface);
         continue;
       }
-      std::fill_n(values, margin, kernels::kNoSurfacePx);
+      std::fill_n(values, margin, kernels::kNoSurface);
       fill(y, values + margin);
-      std::fill_n(values + margin + width, after, kernels::kNoSurfacePx);
+      std::fill_n(values + margin + width, after, kernels::kNoSurface);
     }
   });
 }
 
 /// The row of samples for a kernel, as fill_with_margins() has laid them out.
-kernels::SurfaceRow surface_row(const Image<float>& samples_px, int margin, int y, int radius_px,
-                                int width, DisparityRange search) {
-  return {.disparity_px = samples_px.row(y + margin) + margin,
-          .pitch = static_cast<std::ptrdiff_t>(samples_px.view().stride()),
+kernels::SurfaceRow surface_row(const Image<std::int16_t>& samples, int margin, int y,
+                                int radius_px, int width, DisparityRange search) {
+  return {.samples = samples.row(y + margin) + margin,
+          .pitch = static_cast<std::ptrdiff_t>(samples.view().stride()),
+          .format = kernels::surface_format(search.min, search.max),
           .radius_px = radius_px,
           .width = width,
           .min_px = static_cast<float>(search.min),
@@ -46,21 +47,17 @@ void fit_each_pixel(const Mask& unmatched, int radius_px, DisparityRange search,
                     const TileMask* tiles, Execution& execution, SurfaceFitWork& work,
                     DisparityMap& map_px) {
   const int width = map_px.width();
-  fill_with_margins(width, map_px.height(), radius_px, execution, work.samples_px,
-                    [&](int y, float* values) {
-                      const std::uint8_t* is_unmatched = unmatched.row(y);
-                      const float* map = map_px.row(y);
-                      for (int x = 0; x < width; ++x) {
-                        values[x] = is_unmatched[x] != 0 ? kernels::kNoSurfacePx : map[x];
-                      }
-                    });
+  const kernels::SurfaceFormat format = kernels::surface_format(search.min, search.max);
+  fill_with_margins(
+      width, map_px.height(), radius_px, execution, work.samples, [&](int y, std::int16_t* values) {
+        kernels::surface_sample_row(map_px.row(y), unmatched.row(y), width, format, values);
+      });
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::SurfaceRow row =
-          surface_row(work.samples_px, radius_px, y, radius_px, width, search);
-      const float* const samples_px = row.disparity_px;
+      kernels::SurfaceRow row = surface_row(work.samples, radius_px, y, radius_px, width, search);
+      const std::int16_t* const samples = row.samples;
       for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
-        row.disparity_px = samples_px + columns.begin;
+        row.samples = samples + columns.begin;
         row.width = columns.size();
         kernels::fit_surface_row(row, map_px.row(y) + columns.begin);
       });
@@ -75,6 +72,7 @@ void fit_each_block(const Mask& unmatched, int radius_px, DisparityRange search,
   const int columns = kernels::surface_blocks(map_px.width());
   const int rows = kernels::surface_blocks(height);
   const int margin = kernels::surface_block_margin(radius_px);
+  const kernels::SurfaceFormat format = kernels::surface_format(search.min, search.max);
   const auto pixels = [&](int row) {
     const int upper = 2 * row;
     const int lower = upper + 1;
@@ -85,17 +83,18 @@ void fit_each_block(const Mask& unmatched, int radius_px, DisparityRange search,
                                     .lower_unmatched = has_lower ? unmatched.row(lower) : nullptr,
                                     .width = map_px.width()};
   };
-  fill_with_margins(columns, rows, margin, execution, work.samples_px, [&](int row, float* values) {
-    kernels::surface_block_row(pixels(row), values);
-  });
+  fill_with_margins(columns, rows, margin, execution, work.samples,
+                    [&](int row, std::int16_t* values) {
+                      kernels::surface_block_row(pixels(row), format, values);
+                    });
   execution.for_each_band(rows, [&](int first_row, int end_row) {
     for (int row = first_row; row < end_row; ++row) {
       const kernels::SurfaceRow blocks =
-          surface_row(work.samples_px, margin, row, radius_px, columns, search);
+          surface_row(work.samples, margin, row, radius_px, columns, search);
       const kernels::SurfaceBlockRow of_row = pixels(row);
       for_each_run_in_row(tiles, map_px.width(), 2 * row, [&](scheduler::Range run) {
         kernels::SurfaceRow of_run = blocks;
-        of_run.disparity_px += run.begin / 2;
+        of_run.samples += run.begin / 2;
         const auto from = [&run](auto* values) {
           return values != nullptr ? values + run.begin : nullptr;
         };

@@ -10,6 +10,7 @@ namespace vantage::kernels {
 
 SurfaceLattice surface_block_lattice(int radius_px) {
   SurfaceLattice lattice = surface_lattice(surface_block_margin(radius_px));
+  lattice.unit_weight = 64;  // leaves some steps to the corners, which weigh a quarter
   for (std::size_t i = 0; i < lattice.falloff.size(); ++i) {
     lattice.falloff[i] =
         static_cast<float>(std::exp(-static_cast<double>(i) / kSurfaceFalloffSteps2));
@@ -17,11 +18,12 @@ SurfaceLattice surface_block_lattice(int radius_px) {
   return lattice;
 }
 
-void surface_block_row_ref(const SurfaceBlockRow& row, float* blocks_px) {
+void surface_block_row_ref(const SurfaceBlockRow& row, const SurfaceFormat& format,
+                           std::int16_t* blocks) {
   for (int x = 0; x < row.width; x += 2) {
     const auto value = [&](const float* px, const std::uint8_t* unmatched, int column) {
       return px != nullptr && column < row.width && unmatched[column] == 0 ? px[column]
-                                                                           : kNoSurfacePx;
+                                                                           : kNoBlockPx;
     };
     const std::array<float, 4> values = {value(row.upper_px, row.upper_unmatched, x),
                                          value(row.upper_px, row.upper_unmatched, x + 1),
@@ -31,33 +33,40 @@ void surface_block_row_ref(const SurfaceBlockRow& row, float* blocks_px) {
     float rise = 0;
     float count = 0;
     for (const float one : values) {
-      if (one - lowest < kSurfaceReachPx) {
+      if (one - lowest < kSurfaceBlockRangePx) {
         rise += one - lowest;
         count += 1;
       }
     }
-    blocks_px[x / 2] = lowest + rise / count;
+    blocks[x / 2] =
+        lowest == kNoBlockPx ? kNoSurface : surface_sample(lowest + rise / count, format);
   }
 }
 
 void fit_surface_block_row_ref(const SurfaceRow& blocks, const SurfaceBlockRow& row) {
   const SurfaceLattice lattice = surface_block_lattice(blocks.radius_px);
   const SurfaceQuarterBlock quarter = surface_quarter_block(lattice);
+  const float px_per_unit = 1 / blocks.format.units_per_px();
   for (int x = 0; x < row.width; ++x) {
-    const float* centre = blocks.disparity_px + x / 2;
-    const SurfacePlane plane = fit_surface_plane(centre, blocks.pitch, lattice);
+    const std::int16_t* centre = blocks.samples + x / 2;
+    if (*centre == kNoSurface) {
+      continue;
+    }
+    const SurfacePlane<float> plane =
+        fit_surface_plane(centre, blocks.pitch, lattice, blocks.format);
     const float per_column = plane.slope_u * quarter.along - plane.slope_v * quarter.across;
     const float per_row = plane.slope_u * quarter.across + plane.slope_v * quarter.along;
-    const float middle_px = *centre + plane.height;
-    const auto take = [&](float row_px, const std::uint8_t* unmatched, float& px) {
-      const float plane_px = x % 2 == 0 ? row_px - per_column : row_px + per_column;
-      if (unmatched[x] == 0 && std::abs(plane_px - px) < kSurfaceReachPx) {
+    const float middle = static_cast<float>(*centre) + plane.height;
+    const auto take = [&](float row_units, const std::uint8_t* unmatched, float& px) {
+      const float units = x % 2 == 0 ? row_units - per_column : row_units + per_column;
+      const float plane_px = blocks.format.middle_px + units * px_per_unit;
+      if (unmatched[x] == 0 && std::abs(plane_px - px) < kMaxSurfaceMovePx) {
         px = std::clamp(plane_px, blocks.min_px, blocks.max_px);
       }
     };
-    take(middle_px - per_row, row.upper_unmatched, row.upper_px[x]);
+    take(middle - per_row, row.upper_unmatched, row.upper_px[x]);
     if (row.lower_px != nullptr) {
-      take(middle_px + per_row, row.lower_unmatched, row.lower_px[x]);
+      take(middle + per_row, row.lower_unmatched, row.lower_px[x]);
     }
   }
 }

@@ -5,42 +5,88 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "kernels/surface_fit/surface_fit.h"
+#if HWY_TARGET != HWY_SCALAR
 #include "kernels/surface_fit/surface_plane-inl.h"
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// `before`: values of pixels that are not changed.
-template <int kSteps>
-HWY_INLINE SurfaceVec fitted(const float* disparity_px, const SurfacePlaces<kSteps>& places,
-                             const SurfaceLimits& limits, SurfaceVec before) {
-  const SurfaceTag d;
-  const SurfaceVec height = fit_surface_planes(disparity_px, places).height;
-  const SurfaceVec own = hn::LoadU(d, disparity_px);
-  const auto is_near = hn::Lt(hn::Abs(height), hn::Set(d, kSurfaceReachPx));
-  const auto is_matched = hn::Lt(own, hn::Set(d, kNoSurfacePx));
-  return hn::IfThenElse(hn::And(is_near, is_matched), limits.clamp(hn::Add(own, height)), before);
+#if HWY_TARGET == HWY_SCALAR
+void sample_row_simd(const float* disparity_px, const std::uint8_t* unmatched, int width,
+                     const SurfaceFormat& format, std::int16_t* samples) {
+  surface_sample_row_ref(disparity_px, unmatched, width, format, samples);
+}
+void fit_surface_simd(const SurfaceRow& row, float* fitted_px) {
+  fit_surface_row_ref(row, fitted_px);
+}
+#else
+void sample_row_simd(const float* disparity_px, const std::uint8_t* unmatched, int width,
+                     const SurfaceFormat& format, std::int16_t* samples) {
+  const SurfaceTagF d;
+  const SurfaceTag d_sample;
+  const hn::Rebind<std::uint8_t, SurfaceTag> d_byte;
+  const SurfaceStorage storage(format);
+  const auto none = hn::Set(d_sample, kNoSurface);
+  const auto make = [&](const float* px, const std::uint8_t* mask, std::int16_t* stored) HWY_ATTR {
+    const auto is_matched =
+        hn::Eq(hn::PromoteTo(d_sample, hn::LoadU(d_byte, mask)), hn::Zero(d_sample));
+    const SurfaceVec matched = storage.stored(hn::LoadU(d, px), hn::LoadU(d, px + kSurfaceStepF));
+    hn::StoreU(hn::IfThenElse(is_matched, matched, none), d_sample, stored);
+  };
+  int x = 0;
+  for (; x + kSurfaceStep <= width; x += kSurfaceStep) {
+    make(disparity_px + x, unmatched + x, samples + x);
+  }
+  if (x < width) {
+    HWY_ALIGN float px[kSurfaceStep] = {};
+    HWY_ALIGN std::uint8_t mask[kSurfaceStep] = {};
+    HWY_ALIGN std::int16_t stored[kSurfaceStep];
+    std::copy_n(disparity_px + x, width - x, px);
+    std::copy_n(unmatched + x, width - x, mask);
+    make(px, mask, stored);
+    std::copy_n(stored, width - x, samples + x);
+  }
+}
+
+// Moves kSurfaceStepF pixels to their planes.
+HWY_INLINE void take_planes(const std::int16_t* samples, SurfaceVecF height,
+                            const SurfaceDisparities& disparities, SurfaceVecF max_move,
+                            float* fitted_px) {
+  const SurfaceTagF d;
+  const SurfaceVecF own = load_as_float(samples);
+  const auto is_near = hn::Lt(hn::Abs(height), max_move);
+  const auto is_matched = hn::Gt(own, hn::Set(d, static_cast<float>(kNoSurface)));
+  const SurfaceVecF fitted = disparities.clamp(disparities.px(hn::Add(own, height)));
+  hn::StoreU(hn::IfThenElse(hn::And(is_near, is_matched), fitted, hn::LoadU(d, fitted_px)), d,
+             fitted_px);
 }
 
 template <int kSteps>
 HWY_INLINE void fit_row(const SurfaceRow& row, const SurfaceLattice& lattice, float* fitted_px) {
-  const SurfaceTag d;
-  const SurfacePlaces<kSteps> places(lattice, row.pitch);
-  const SurfaceLimits limits(row);
-  int x = 0;
-  for (; x + kSurfaceStep <= row.width; x += kSurfaceStep) {
-    const SurfaceVec before = hn::LoadU(d, fitted_px + x);
-    hn::StoreU(fitted(row.disparity_px + x, places, limits, before), d, fitted_px + x);
-  }
-  if (x < row.width) {
-    HWY_ALIGN float last[kSurfaceStep] = {};
-    std::copy_n(fitted_px + x, row.width - x, last);
-    const SurfaceVec before = hn::Load(d, last);
-    hn::Store(fitted(row.disparity_px + x, places, limits, before), d, last);
-    std::copy_n(last, row.width - x, fitted_px + x);
+  const SurfaceDisparities disparities(row);
+  const SurfaceVecF max_move =
+      hn::Set(SurfaceTagF(), kMaxSurfaceMovePx * row.format.units_per_px());
+  SurfaceRowFit<kSteps> fit(lattice, row);
+  for (int part = 0; part < row.width; part += fit.kSize) {
+    const std::int16_t* samples = row.samples + part;
+    float* const part_px = fitted_px + part;
+    const int width = std::min(fit.kSize, row.width - part);
+    fit.fit(samples, width);
+    int x = 0;
+    for (; x + kSurfaceStepF <= width; x += kSurfaceStepF) {
+      take_planes(samples + x, fit.planes(x).height, disparities, max_move, part_px + x);
+    }
+    if (x < width) {
+      HWY_ALIGN float last[kSurfaceStepF] = {};
+      std::copy_n(part_px + x, width - x, last);
+      take_planes(samples + x, fit.planes(x).height, disparities, max_move, last);
+      std::copy_n(last, width - x, part_px + x);
+    }
   }
 }
 
@@ -52,13 +98,20 @@ void fit_surface_simd(const SurfaceRow& row, float* fitted_px) {
     fit_row<1>(row, lattice, fitted_px);
   }
 }
+#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace vantage::kernels {
+HWY_EXPORT(sample_row_simd);
 HWY_EXPORT(fit_surface_simd);
+
+void surface_sample_row(const float* disparity_px, const std::uint8_t* unmatched, int width,
+                        const SurfaceFormat& format, std::int16_t* samples) {
+  HWY_DYNAMIC_DISPATCH(sample_row_simd)(disparity_px, unmatched, width, format, samples);
+}
 
 void fit_surface_row(const SurfaceRow& row, float* fitted_px) {
   HWY_DYNAMIC_DISPATCH(fit_surface_simd)(row, fitted_px);

@@ -1,112 +1,113 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstdlib>
 
 #include "kernels/surface_fit/surface_fit.h"
 
 namespace vantage::kernels {
 
-// One plane by one, for the scalar references; surface_plane-inl.h is the vector form.
+// One plane by one, for the scalar references; surface_plane-inl.h is the vector form. Everything
+// is in steps of the format (SurfaceFormat). Sums are integers, so their order does not matter;
+// equations are solved in floats. The first plane is rounded, so that distances from it are
+// integers: that only moves the point from which the second pass starts.
 
-/// Disparity at lattice position (u, v), in units of the arm length: the centre's own + height +
-/// slope_u · u + slope_v · v.
+/// Stored disparity i, j steps along the lattice's arms: the centre's own + height + slope_u · i +
+/// slope_v · j.
+template <typename T>
 struct SurfacePlane {
-  float height = 0;
-  float slope_u = 0;
-  float slope_v = 0;
+  T height = 0;
+  T slope_u = 0;
+  T slope_v = 0;
 };
 
-/// Weight of a sample, and weight times its distance from the plane.
-struct SurfaceSample {
-  float w = 0;
-  float we = 0;
-};
-
-/// `falloff`: weight of a sample on the plane.
-inline SurfaceSample weigh_surface_sample(float disparity_px, float plane_px, float falloff) {
-  constexpr float kPerReach = 1 / (kSurfaceReachPx * kSurfaceReachPx);
-  const float e = disparity_px - plane_px;
-  const float w = std::max(falloff - e * e * (falloff * kPerReach), 0.0F);
-  return {w, w * e};
-}
-
+/// Sums over samples of weights w, and of weights times e, the plane's height above the sample.
 struct SurfaceSums {
-  float w = 0, wu = 0, wv = 0, wuu = 0, wuv = 0, wvv = 0;
-  float we = 0, weu = 0, wev = 0;
+  int w = 0, wu = 0, wv = 0, wuu = 0, wuv = 0, wvv = 0;
+  int we = 0, weu = 0, wev = 0;
 };
 
-/// `centre`: disparity at the lattice's centre.
-inline SurfaceSums sum_surface_samples(const float* centre, std::ptrdiff_t pitch,
-                                       const SurfaceLattice& lattice, const SurfacePlane& plane) {
-  const int steps = lattice.steps;
-  const auto sample = [&](int i, int j, float plane_px) {
-    return weigh_surface_sample(centre[lattice.row(i, j) * pitch + lattice.column(i, j)], plane_px,
-                                lattice.falloff_at(i, j));
-  };
+/// `centre`: the lattice's, matched.
+inline SurfaceSums sum_surface_samples(const std::int16_t* centre, std::ptrdiff_t pitch,
+                                       const SurfaceLattice& lattice, const SurfaceWeights& weights,
+                                       const SurfacePlane<int>& plane) {
   SurfaceSums sums;
-  for (int j = -steps; j <= steps; ++j) {
-    const float v = static_cast<float>(j) / static_cast<float>(steps);
-    const float middle_px = *centre + (plane.height + plane.slope_v * v);
-    const SurfaceSample middle = sample(0, j, middle_px);
-    SurfaceSums line;
-    line.w = middle.w;
-    line.we = middle.we;
-    // Processes samples on both sides together, which halves the number of products.
-    for (int i = 1; i <= steps; ++i) {
-      const float u = static_cast<float>(i) / static_cast<float>(steps);
-      const float rise_px = plane.slope_u * u;
-      const SurfaceSample above = sample(i, j, middle_px + rise_px);
-      const SurfaceSample below = sample(-i, j, middle_px - rise_px);
-      const float w = above.w + below.w;
-      line.w += w;
-      line.wu += (above.w - below.w) * u;
-      line.wuu += w * (u * u);
-      line.we += above.we + below.we;
-      line.weu += (above.we - below.we) * u;
+  for (int j = -lattice.steps; j <= lattice.steps; ++j) {
+    for (int i = -lattice.steps; i <= lattice.steps; ++i) {
+      const int sample = centre[lattice.row(i, j) * pitch + lattice.column(i, j)];
+      const int e = (*centre + plane.height + plane.slope_u * i + plane.slope_v * j) - sample;
+      const int share = weights.share[static_cast<std::size_t>(i * i + j * j)];
+      const int w = (std::max(weights.reach - std::abs(e), 0) * share) >> 16;
+      sums.w += w;
+      sums.wu += w * i;
+      sums.wv += w * j;
+      sums.wuu += w * i * i;
+      sums.wuv += w * i * j;
+      sums.wvv += w * j * j;
+      sums.we += w * e;
+      sums.weu += w * e * i;
+      sums.wev += w * e * j;
     }
-    const float wv = line.w * v;
-    sums.w += line.w;
-    sums.wu += line.wu;
-    sums.wv += wv;
-    sums.wuu += line.wuu;
-    sums.wuv += line.wu * v;
-    sums.wvv += wv * v;
-    sums.we += line.we;
-    sums.weu += line.weu;
-    sums.wev += line.we * v;
   }
   return sums;
 }
 
-/// Moves `plane` to the best fit, given the sums of distances from it.
-inline void improve_surface_plane(const SurfaceSums& sums, SurfacePlane& plane) {
-  const float w = sums.w + kMinSurfaceWeight;
-  const float n = 1 / w;
-  const float u = sums.wu * n;
-  const float v = sums.wv * n;
-  const float ridge = w * kSlopeRidge;
-  const float uu = (sums.wuu - sums.wu * u) + ridge;
-  const float vv = (sums.wvv - sums.wv * v) + ridge;
-  const float uv = sums.wuv - sums.wu * v;
-  const float eu = sums.weu - sums.we * u;
-  const float ev = sums.wev - sums.we * v;
+/// Ridge of squared slopes per step.
+inline float surface_ridge(const SurfaceLattice& lattice) {
+  return kSlopeRidge * static_cast<float>(lattice.steps * lattice.steps);
+}
+
+/// What the plane that heights were measured from is above the best fit.
+inline SurfacePlane<float> surface_correction(const SurfaceSums& sums, float ridge) {
+  const auto wu = static_cast<float>(sums.wu);
+  const auto wv = static_cast<float>(sums.wv);
+  const auto we = static_cast<float>(sums.we);
+  // Without samples, all sums are 0.
+  const float w = std::max(static_cast<float>(sums.w), 1.0F);
+  const float ridge_ww = w * w * ridge;
+  const float uu = (static_cast<float>(sums.wuu) * w - wu * wu) + ridge_ww;
+  const float vv = (static_cast<float>(sums.wvv) * w - wv * wv) + ridge_ww;
+  const float uv = static_cast<float>(sums.wuv) * w - wu * wv;
+  const float eu = static_cast<float>(sums.weu) * w - we * wu;
+  const float ev = static_cast<float>(sums.wev) * w - we * wv;
   const float determinant = uu * vv - uv * uv;
-  const float slope_u = (eu * vv - ev * uv) / determinant;
-  const float slope_v = (ev * uu - eu * uv) / determinant;
-  plane.height += (sums.we * n - slope_u * u) - slope_v * v;
-  plane.slope_u += slope_u;
-  plane.slope_v += slope_v;
+  const float inverse = 1 / (determinant * w);  // of both in one division
+  const float per_determinant = inverse * w;
+  const float per_w = inverse * determinant;
+  const float slope_u = (eu * vv - ev * uv) * per_determinant;
+  const float slope_v = (ev * uu - eu * uv) * per_determinant;
+  return {((we - slope_u * wu) - slope_v * wv) * per_w, slope_u, slope_v};
 }
 
 /// The plane at a lattice's centre.
-inline SurfacePlane fit_surface_plane(const float* centre, std::ptrdiff_t pitch,
-                                      const SurfaceLattice& lattice) {
-  SurfacePlane plane;
-  for (int pass = 0; pass < kSurfacePasses; ++pass) {
-    improve_surface_plane(sum_surface_samples(centre, pitch, lattice, plane), plane);
-  }
-  return plane;
+inline SurfacePlane<float> fit_surface_plane(const std::int16_t* centre, std::ptrdiff_t pitch,
+                                             const SurfaceLattice& lattice,
+                                             const SurfaceFormat& format) {
+  const SurfaceWeights weights = surface_weights(lattice, format);
+  const float ridge = surface_ridge(lattice);
+  const SurfacePlane<float> first =
+      surface_correction(sum_surface_samples(centre, pitch, lattice, weights, {}), ridge);
+  const auto rounded = [&](float value) {
+    const int limit = kMaxFirstSurfacePx << format.fraction_bits;
+    return std::clamp(-static_cast<int>(std::nearbyint(value)), -limit, limit);
+  };
+  const SurfacePlane<int> plane = {rounded(first.height), rounded(first.slope_u),
+                                   rounded(first.slope_v)};
+  const SurfacePlane<float> last =
+      surface_correction(sum_surface_samples(centre, pitch, lattice, weights, plane), ridge);
+  return {static_cast<float>(plane.height) - last.height,
+          static_cast<float>(plane.slope_u) - last.slope_u,
+          static_cast<float>(plane.slope_v) - last.slope_v};
+}
+
+/// A disparity as it is stored, halves to even.
+inline std::int16_t surface_sample(float disparity_px, const SurfaceFormat& format) {
+  const auto limit = static_cast<float>(max_surface_sample(format));
+  const float units = (disparity_px - format.middle_px) * format.units_per_px();
+  return static_cast<std::int16_t>(std::nearbyint(std::clamp(units, -limit, limit)));
 }
 
 }  // namespace vantage::kernels

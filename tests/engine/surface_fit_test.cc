@@ -19,6 +19,9 @@ namespace surface_fit_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
+/// Of all maps here.
+constexpr DisparityRange kSearch{-40, 60};
+
 float plane(int x, int y) {
   return 8 + 0.12F * static_cast<float>(x) - 0.07F * static_cast<float>(y);
 }
@@ -50,7 +53,7 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
     for (const auto& [radius, step] : {std::pair{1, 1}, {7, 1}, {16, 1}, {1, 2}, {10, 2}}) {
       SteppedMap stepped = stepped_map(width, height);
       const DisparityMap before = stepped.map.copy();
-      fit_surface(stepped.unmatched, radius, step, kAnyDisparity, execution, work, stepped.map);
+      fit_surface(stepped.unmatched, radius, step, kSearch, execution, work, stepped.map);
       // The same with all unmatched pixels unknown: their values have no say.
       SteppedMap unknown{before.copy(), std::move(stepped.unmatched)};
       for (int y = 0; y < height; ++y) {
@@ -60,7 +63,7 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
           }
         }
       }
-      fit_surface(unknown.unmatched, radius, step, kAnyDisparity, execution, work, unknown.map);
+      fit_surface(unknown.unmatched, radius, step, kSearch, execution, work, unknown.map);
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
           if (unknown.unmatched.at(x, y) == 0) {
@@ -88,9 +91,9 @@ TEST(FitSurface, TilesHaveTheValuesOfAWholeFit) {
   }
   for (const int step : {1, 2}) {
     DisparityMap whole = stepped.map.copy();
-    fit_surface(stepped.unmatched, 10, step, kAnyDisparity, execution, work, whole);
+    fit_surface(stepped.unmatched, 10, step, kSearch, execution, work, whole);
     DisparityMap parts = stepped.map.copy();
-    fit_surface(stepped.unmatched, 10, step, kAnyDisparity, execution, work, parts, &tiles);
+    fit_surface(stepped.unmatched, 10, step, kSearch, execution, work, parts, &tiles);
     for (int y = 0; y < 41; ++y) {
       for (int x = 0; x < 53; ++x) {
         const float expected = tiles.at(x / 8, y / 8) ? whole.at(x, y) : stepped.map.at(x, y);
@@ -116,14 +119,16 @@ TEST(FitSurface, ValuesStayWithinTheSearch) {
     }
   }
   DisparityMap free = stepped.map.copy();
-  fit_surface(stepped.unmatched, 10, 1, kAnyDisparity, execution, work, free);
+  fit_surface(stepped.unmatched, 10, 1, kSearch, execution, work, free);
   fit_surface(stepped.unmatched, 10, 1, search, execution, work, stepped.map);
   int outside = 0;
   for (int y = 0; y < 43; ++y) {
     for (int x = 0; x < 61; ++x) {
       if (stepped.unmatched.at(x, y) == 0) {
         outside += free.at(x, y) < 5 || free.at(x, y) > 9 ? 1 : 0;
-        ASSERT_EQ(stepped.map.at(x, y), std::clamp(free.at(x, y), 5.0F, 9.0F)) << x << ", " << y;
+        // But for the last bits: samples are stored relative to the middle of the search.
+        ASSERT_NEAR(stepped.map.at(x, y), std::clamp(free.at(x, y), 5.0F, 9.0F), 1e-5)
+            << x << ", " << y;
       }
     }
   }
@@ -136,10 +141,10 @@ TEST(FitSurface, ExecutionsAgree) {
     SteppedMap stepped = stepped_map(97, 151);
     DisparityMap serial = stepped.map.copy();
     Execution one({.executor = scheduler::ExecutorKind::kSerial});
-    fit_surface(stepped.unmatched, 10, step, kAnyDisparity, one, work, serial);
+    fit_surface(stepped.unmatched, 10, step, kSearch, one, work, serial);
     EXPECT_FALSE(test::identical(serial, stepped.map));
     Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
-    fit_surface(stepped.unmatched, 10, step, kAnyDisparity, three, work, stepped.map);
+    fit_surface(stepped.unmatched, 10, step, kSearch, three, work, stepped.map);
     EXPECT_TRUE(test::identical(serial, stepped.map)) << step;
   }
 }
@@ -154,7 +159,8 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
     }
   }
   MatchedMap matched{.disparity_px = stepped.map.copy(), .disparity_y_px = stepped.map.copy()};
-  const MapToRefine map{.side = Side::kLeft, .map = &matched};
+  const MapToRefine map{
+      .side = Side::kLeft, .map = &matched, .search = kSearch, .search_y = kSearch};
   std::vector<std::string> steps;
   refine_maps({.edge_snapping_px = 0,
                .cross_check = false,
@@ -169,7 +175,7 @@ TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
               [&](std::string_view step) { steps.emplace_back(step); });
   EXPECT_THAT(steps, ::testing::ElementsAre("surface fit", "fill"));
   SurfaceFitWork alone;
-  fit_surface(stepped.unmatched, 6, 1, kAnyDisparity, execution, alone, stepped.map);
+  fit_surface(stepped.unmatched, 6, 1, kSearch, execution, alone, stepped.map);
   fill_unmatched(stepped.unmatched, Side::kLeft, Fill::kConstant, execution, stepped.map);
   EXPECT_TRUE(test::identical(matched.disparity_px, stepped.map));
   EXPECT_TRUE(test::identical(matched.disparity_y_px, stepped.map));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <random>
 #include <utility>
@@ -50,30 +51,33 @@ struct PixelMap {
   }
 };
 
+constexpr SurfaceFormat kFormat = {.middle_px = 10.5F, .fraction_bits = 6};
 constexpr float kMinPx = -100;
 constexpr float kMaxPx = 25;
 
 /// The blocks of the map; fits the map.
-std::vector<std::vector<float>> fit(PixelMap& map, int radius_px, const Kernels& kernels = {}) {
+std::vector<std::vector<std::int16_t>> fit(PixelMap& map, int radius_px,
+                                           const Kernels& kernels = {}) {
   const int margin = surface_block_margin(radius_px);
   const int columns = surface_blocks(map.width);
   const int rows = surface_blocks(map.height);
   const auto pitch = static_cast<std::size_t>(columns + 2 * margin + kSurfaceRowSlack);
-  std::vector<float> memory(pitch * static_cast<std::size_t>(rows + 2 * margin), kNoSurfacePx);
+  std::vector<std::int16_t> memory(pitch * static_cast<std::size_t>(rows + 2 * margin), kNoSurface);
   const auto place = [&](int row) {
     return memory.data() + static_cast<std::size_t>(row + margin) * pitch + margin;
   };
-  std::vector<std::vector<float>> blocks;
+  std::vector<std::vector<std::int16_t>> blocks;
   for (int row = 0; row < rows; ++row) {
-    GuardedRow<float> values(static_cast<std::size_t>(columns), 1, -99.0F);
-    kernels.block_row(map.row(2 * row), values.data());
+    GuardedRow<std::int16_t> values(static_cast<std::size_t>(columns), 1, -99);
+    kernels.block_row(map.row(2 * row), kFormat, values.data());
     EXPECT_TRUE(values.intact());
     blocks.push_back(values.values());
     std::copy(blocks.back().begin(), blocks.back().end(), place(row));
   }
   for (int row = 0; row < rows; ++row) {
-    kernels.fit({.disparity_px = place(row),
+    kernels.fit({.samples = place(row),
                  .pitch = static_cast<std::ptrdiff_t>(pitch),
+                 .format = kFormat,
                  .radius_px = radius_px,
                  .width = columns,
                  .min_px = kMinPx,
@@ -144,7 +148,7 @@ TEST_P(SurfaceBlocks, PlanesStayUpToTheBorder) {
     for (int y = 0; y < map.height; ++y) {
       for (int x = 0; x < map.width; ++x) {
         ASSERT_NEAR(map.at(x, y), map.mask(x, y) != 0 ? plane(x, y) : std::min(plane(x, y), kMaxPx),
-                    1e-3)
+                    1e-2)  // samples are rounded to 1/64 px
             << x << ", " << y << ", radius " << radius;
       }
     }
@@ -175,7 +179,6 @@ TEST_P(SurfaceBlocks, WinnersOfBlocksBecomeThePlaneTheyStandFor) {
 }
 
 TEST_P(SurfaceBlocks, BlocksAreOfOneSurface) {
-  const float far = kNoSurfacePx;
   PixelMap map(6, 2, [&](int x, int y) {
     constexpr float kRows[2][6] = {{3, 4, 3, 8, 9, 9}, {3, 4, 4, 9, 9, 9}};
     return kRows[y][x];
@@ -184,9 +187,10 @@ TEST_P(SurfaceBlocks, BlocksAreOfOneSurface) {
   for (const int x : {4, 5}) {
     map.mask(x, 0) = map.mask(x, 1) = 255;
   }
-  std::vector<float> blocks(3);
-  surface_block_row(map.row(0), blocks.data());
-  EXPECT_EQ(blocks, (std::vector<float>{3 + 1 / 3.0F, 3.5F, far}));
+  std::vector<std::int16_t> blocks(3);
+  surface_block_row(map.row(0), kFormat, blocks.data());
+  // 3 1/3 and 3 1/2 px, in steps of 1/64 px from 10 1/2 px.
+  EXPECT_EQ(blocks, (std::vector<std::int16_t>{-459, -448, kNoSurface}));
 }
 
 TEST_P(SurfaceBlocks, SurfacesAcrossADepthEdgeHaveNoSay) {

@@ -5,46 +5,68 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <random>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "kernels/surface_fit/surface_blocks.h"
 #include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
 namespace surface_fit_test {
 
-using Maybe = std::function<float(int x, int y)>;  // kNoSurfacePx: no match
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+using Maybe = std::function<float(int x, int y)>;  // kNone: no match
+constexpr SurfaceFormat kFormat = {.middle_px = 30.5F, .fraction_bits = 6};
+
+constexpr float kSamplePx = 0.01F;  // to which samples are rounded
 
 /// A map between margins that end where the memory does.
 struct MarginMap {
   int width, height, radius_px, pitch;
-  std::vector<float> memory;
+  SurfaceFormat format;
+  std::vector<std::int16_t> memory;
 
-  MarginMap(int width_px, int height_px, int radius, const Maybe& disparity_px)
+  MarginMap(int width_px, int height_px, int radius, const Maybe& disparity_px,
+            const SurfaceFormat& stored = kFormat)
       : width(width_px),
         height(height_px),
         radius_px(radius),
         pitch(width_px + 2 * radius + kSurfaceRowSlack),
+        format(stored),
         memory(static_cast<std::size_t>(pitch) * static_cast<std::size_t>(height_px + 2 * radius),
-               kNoSurfacePx) {
+               kNoSurface) {
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
-        at(x, y) = disparity_px(x, y);
+        const float px = disparity_px(x, y);
+        const std::uint8_t unmatched = std::isnan(px) ? 255 : 0;
+        surface_sample_row(&px, &unmatched, 1, format, &sample(x, y));
       }
     }
   }
-  float& at(int x, int y) {
+  /// As it is stored.
+  [[nodiscard]] float at(int x, int y) {
+    return format.middle_px + static_cast<float>(sample(x, y)) / format.units_per_px();
+  }
+  std::int16_t& sample(int x, int y) {
     return memory[static_cast<std::size_t>((y + radius_px) * pitch + x + radius_px)];
   }
   [[nodiscard]] bool is_matched(int x, int y) {
-    return x >= 0 && y >= 0 && x < width && y < height && at(x, y) != kNoSurfacePx;
+    return x >= 0 && y >= 0 && x < width && y < height && sample(x, y) != kNoSurface;
   }
   [[nodiscard]] SurfaceRow row(int y) {
-    return {.disparity_px = &at(0, y), .pitch = pitch, .radius_px = radius_px, .width = width};
+    return {.samples = &sample(0, y),
+            .pitch = pitch,
+            .format = format,
+            .radius_px = radius_px,
+            .width = width,
+            .min_px = -1e6F,
+            .max_px = 1e6F};
   }
 };
 
@@ -109,16 +131,23 @@ std::array<double, 3> solve(std::array<std::array<double, 3>, 3> a, std::array<d
   return b;
 }
 
+/// What is rounded besides the samples.
+enum class Rounding {
+  kNothing,  ///< real numbers
+  kDefined,  ///< weights down to 32nds, the first plane to steps of the format
+};
+
 /// By the definition: the plane that is best for the weights of the one before, anew in each pass,
 /// in map coordinates. Returns its height over the pixel.
-double plane_over(MarginMap& map, int x, int y) {
+double plane_over(MarginMap& map, int x, int y, Rounding rounding) {
   const SurfaceLattice lattice = surface_lattice(map.radius_px);
   const double own = map.at(x, y);
+  const bool rounds = rounding == Rounding::kDefined;
   std::array<double, 3> plane{};
   for (int pass = 0; pass < 2; ++pass) {
     std::array<std::array<double, 3>, 3> a{};
     std::array<double, 3> b{};
-    double weight = 1e-6;
+    double weight = 0;
     for (int j = -lattice.steps; j <= lattice.steps; ++j) {
       for (int i = -lattice.steps; i <= lattice.steps; ++i) {
         const int column = x + lattice.column(i, j);
@@ -126,11 +155,11 @@ double plane_over(MarginMap& map, int x, int y) {
         if (!map.is_matched(column, row)) {
           continue;
         }
-        const std::array<double, 3> terms = {1, static_cast<double>(i) / lattice.steps,
-                                             static_cast<double>(j) / lattice.steps};
+        const std::array<double, 3> terms = {1.0, static_cast<double>(i), static_cast<double>(j)};
         const double z = static_cast<double>(map.at(column, row)) - own;
         const double e = z - (plane[0] + plane[1] * terms[1] + plane[2] * terms[2]);
-        const double w = std::max(0.0, 1 - e * e / (1.5 * 1.5));
+        const double share = std::max(0.0, 1 - std::abs(e) / 1.75);
+        const double w = rounds ? std::floor(32 * share + 1e-6) / 32 : share;
         weight += w;
         for (std::size_t k = 0; k < 3; ++k) {
           for (std::size_t l = 0; l < 3; ++l) {
@@ -140,13 +169,20 @@ double plane_over(MarginMap& map, int x, int y) {
         }
       }
     }
-    a[0][0] += 1e-6;
-    b[0] += 1e-6 * plane[0];
+    if (weight == 0) {
+      return plane[0];
+    }
+    const double ridge = weight / 16384 * lattice.steps * lattice.steps;
     for (std::size_t k = 1; k < 3; ++k) {  // slopes are drawn to those before
-      a[k][k] += weight * kSlopeRidge;
-      b[k] += weight * kSlopeRidge * plane[k];
+      a[k][k] += ridge;
+      b[k] += ridge * plane[k];
     }
     plane = solve(a, b);
+    for (double& value : plane) {
+      if (rounds && pass == 0) {
+        value = std::clamp(std::nearbyint(value * 64) / 64, -4.0, 4.0);
+      }
+    }
   }
   return plane[0];
 }
@@ -156,17 +192,18 @@ VANTAGE_ON_EVERY_TARGET(SurfaceFit);
 
 TEST_P(SurfaceFit, EqualsPlainTranscription) {
   std::mt19937 random(51);
+  double sum_of_rounding = 0;
+  int pixels = 0;
   for (const auto& [width, height] :
        {std::pair{1, 1}, {1, 9}, {13, 1}, {2, 3}, {7, 5}, {8, 4}, {17, 11}, {31, 7}, {67, 9}}) {
     for (const int radius : {1, 2, 3, 5, 10, 16}) {
       // Slanted, in whole pixels and beside them, with a jump and stray values.
-      MarginMap map(width, height, radius, [&](int x, int y) {
+      MarginMap map(width, height, radius, [&, w = width](int x, int y) {
         const int kind = random_int(random, 0, 9);
         const float slope = 0.21F * static_cast<float>(x) - 0.13F * static_cast<float>(y);
         const float noise = 0.01F * static_cast<float>(random_int(random, -30, 30));
-        const float jump = x > width / 2 ? 3.0F : 0.0F;
-        return kind == 0 ? kNoSurfacePx
-                         : std::round(slope) + noise + jump + (kind == 1 ? 1.2F : 0.0F);
+        const float jump = x > w / 2 ? 3.0F : 0.0F;
+        return kind == 0 ? kNone : std::round(slope) + noise + jump + (kind == 1 ? 1.2F : 0.0F);
       });
       for (int y = 0; y < height; ++y) {
         const std::vector<float> simd = fitted(map, y, fit_surface_row);
@@ -180,17 +217,22 @@ TEST_P(SurfaceFit, EqualsPlainTranscription) {
             ASSERT_EQ(value, kBefore);
             continue;
           }
-          const double move = plane_over(map, x, y);
-          if (std::abs(std::abs(move) - kSurfaceReachPx) < 1e-3) {
+          const double move = plane_over(map, x, y, Rounding::kDefined);
+          if (std::abs(std::abs(move) - kMaxSurfaceMovePx) < 1e-3) {
             continue;  // on the brink
           }
-          const double expected = map.at(x, y) + (std::abs(move) < kSurfaceReachPx ? move : 0);
-          ASSERT_NEAR(value, expected, 1e-3)
+          const bool is_moved = std::abs(move) < kMaxSurfaceMovePx;
+          ASSERT_NEAR(value, map.at(x, y) + (is_moved ? move : 0), 1e-3)
               << x << ", " << y << " of " << width << 'x' << height << ", radius " << radius;
+          if (is_moved && radius >= 2) {  // of 9 samples, few have a say
+            sum_of_rounding += std::abs(move - plane_over(map, x, y, Rounding::kNothing));
+            ++pixels;
+          }
         }
       }
     }
   }
+  EXPECT_LT(sum_of_rounding / pixels, 0.005);
 }
 
 TEST_P(SurfaceFit, PlanesStayUpToTheBorder) {
@@ -200,13 +242,13 @@ TEST_P(SurfaceFit, PlanesStayUpToTheBorder) {
   };
   for (const int radius : {1, 4, 10, 16}) {
     MarginMap map(45, 37, radius, [&](int x, int y) {
-      return random_int(random, 0, 4) == 0 ? kNoSurfacePx : plane(x, y);
+      return random_int(random, 0, 4) == 0 ? kNone : plane(x, y);
     });
     for (int y = 0; y < map.height; ++y) {
       const std::vector<float> row = fitted(map, y, fit_surface_row);
       for (int x = 0; x < map.width; ++x) {
         if (map.is_matched(x, y)) {
-          ASSERT_NEAR(row[static_cast<std::size_t>(x)], plane(x, y), 1e-4) << x << ", " << y;
+          ASSERT_NEAR(row[static_cast<std::size_t>(x)], plane(x, y), kSamplePx) << x << ", " << y;
         }
       }
     }
@@ -223,7 +265,7 @@ TEST_P(SurfaceFit, SurfacesAcrossADepthEdgeHaveNoSay) {
     for (int y = 0; y < map.height; ++y) {
       const std::vector<float> row = fitted(map, y, fit_surface_row);
       for (int x = 0; x < map.width; ++x) {
-        ASSERT_NEAR(row[static_cast<std::size_t>(x)], planes(x, y), 1e-4) << x << ", " << y;
+        ASSERT_NEAR(row[static_cast<std::size_t>(x)], planes(x, y), kSamplePx) << x << ", " << y;
       }
     }
   }
@@ -244,6 +286,101 @@ TEST_P(SurfaceFit, StepsBecomeThePlaneTheyStandFor) {
     }
   }
   EXPECT_LT(squares_after, squares_before / 16);
+}
+
+TEST_P(SurfaceFit, EndsOfTheRangeAreLikeItsMiddle) {
+  // Planes that leave the range, beside pixels without a match.
+  std::mt19937 random(53);
+  const SurfaceFormat format = surface_format(0, 971);
+  EXPECT_EQ(format.fraction_bits, 6);
+  for (const float offset_px : {-486.0F, 482.0F}) {
+    const auto make = [&](float from_px) {
+      std::mt19937 same(random);
+      return MarginMap(
+          40, 20, 10,
+          [&, from_px](int x, int y) {
+            const int slope = x - 2 * y + random_int(same, -3, 3);
+            return random_int(same, 0, 2) == 0
+                       ? kNone
+                       : from_px + std::clamp(static_cast<float>(slope) / 4, -3.0F, 7.0F);
+          },
+          format);
+    };
+    MarginMap middle = make(format.middle_px);
+    MarginMap end = make(format.middle_px + offset_px);
+    for (int y = 0; y < middle.height; ++y) {
+      const std::vector<float> expected = fitted(middle, y, fit_surface_row);
+      const std::vector<float> moved = fitted(end, y, fit_surface_row);
+      for (int x = 0; x < middle.width; ++x) {
+        const auto i = static_cast<std::size_t>(x);
+        ASSERT_NEAR(moved[i], expected[i] == kBefore ? kBefore : expected[i] + offset_px, 1e-4);
+      }
+    }
+  }
+}
+
+TEST_P(SurfaceFit, SamplesAreNearestSteps) {
+  std::vector<float> px;
+  std::vector<std::uint8_t> unmatched;
+  for (int i = 0; i < 77; ++i) {
+    px.push_back(i % 7 == 0 ? NAN : 30.5F + static_cast<float>(i - 38) * 31.7F / 64);
+    unmatched.push_back(i % 7 == 0 ? 255 : 0);
+  }
+  px[1] = 30.5F + 0.5F / 64;  // halves
+  px[2] = 30.5F + 1.5F / 64;
+  px[3] = 1e6F;
+  px[4] = -1e6F;
+  GuardedRow<std::int16_t> simd(px.size(), 1, -99);
+  surface_sample_row(px.data(), unmatched.data(), 77, kFormat, simd.data());
+  ASSERT_TRUE(simd.intact());
+  std::vector<std::int16_t> reference(px.size());
+  surface_sample_row_ref(px.data(), unmatched.data(), 77, kFormat, reference.data());
+  EXPECT_EQ(simd.values(), reference);
+  EXPECT_EQ(std::vector<int>(reference.begin(), reference.begin() + 5),
+            (std::vector<int>{kNoSurface, 0, 2, 31359, -31359}));
+  EXPECT_EQ(reference[39], std::lround(31.7));
+}
+
+TEST(SurfaceFormats, HoldTheirRanges) {
+  for (const auto& [width, bits] : {std::pair{0, 6},
+                                    {971, 6},
+                                    {972, 5},
+                                    {1995, 5},
+                                    {1996, 4},
+                                    {4043, 4},
+                                    {4044, 3},
+                                    {8139, 3}}) {
+    const SurfaceFormat format = surface_format(-7, width - 7);
+    EXPECT_EQ(format.fraction_bits, bits) << width;
+    EXPECT_GE(static_cast<float>(max_surface_sample(format)) / format.units_per_px(),
+              static_cast<float>(width) / 2 + kSurfaceRangeMarginPx);
+  }
+}
+
+TEST(SurfaceFormats, SumsFit16Bits) {
+  for (const SurfaceLattice& lattice :
+       {surface_lattice(1), surface_lattice(10), surface_block_lattice(10)}) {
+    for (const int bits : {3, 4, 5, 6}) {
+      const SurfaceWeights weights = surface_weights(lattice, {.fraction_bits = bits});
+      int we = 0;  // the largest sums there can be
+      int weu = 0;
+      int wuu = 0;
+      for (int j = -lattice.steps; j <= lattice.steps; ++j) {
+        for (int i = -lattice.steps; i <= lattice.steps; ++i) {
+          const int share = weights.share[static_cast<std::size_t>(i * i + j * j)];
+          int largest = 0;
+          for (int e = 0; e < weights.reach; ++e) {
+            largest = std::max(largest, (((weights.reach - e) * share) >> 16) * e);
+          }
+          we += largest;
+          weu += largest * std::abs(i);
+          wuu += ((weights.reach * share) >> 16) * i * i;
+        }
+      }
+      EXPECT_LE(std::max({we, weu, wuu}), 32767) << bits;
+      EXPECT_GE(wuu, 6 * 8 * lattice.steps * lattice.steps) << "weights of few steps";
+    }
+  }
 }
 
 TEST(SurfaceLattice, SamplesAreApartAndInsideTheWindow) {
