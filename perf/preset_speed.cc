@@ -157,14 +157,17 @@ int main(int argc, char** argv) {
   std::string only;
   int threads = vantage::scheduler::detect_machine().hardware_threads;
   int rounds = 9;
+  std::string isa = "best";
   std::optional<std::string> json_path;
   line.size(width, height, "Size of the images; by default 450x375 with 64 disparities, 1920x1080");
   line.number("--disparities", disparities, "Candidate disparities");
   line.only(only, "Only this preset");
   line.threads(threads);
   line.rounds(rounds);
+  line.option("--isa", isa, "Instruction set of the kernels, as in vantage --isa");
   line.json(json_path);
   line.parse(argc, argv);
+  vantage::force_instruction_set(isa);
   fmt::print("instruction set {}\n", vantage::instruction_set_in_use());
   vantage::Execution execution({.threads = threads});
   nlohmann::json tables = nlohmann::json::array();
