@@ -62,7 +62,18 @@ void write_pixels(const T* photograph, int width, int channels, std::uint8_t* pi
     }
     return;
   }
-  for (int x = 0; x < width; ++x) {
+  int x = 0;
+  if constexpr (std::is_same_v<T, std::uint8_t>) {
+    if (channels == 3) {  // four bytes at once, but where they would end after the row
+      for (; x + 1 < width; ++x) {
+        std::memcpy(pixels, photograph, kernels::kFilledPixelBytes);
+        pixels[3] = 0;
+        photograph += 3;
+        pixels += kernels::kFilledPixelBytes;
+      }
+    }
+  }
+  for (; x < width; ++x) {
     pixels[0] = grey_level(photograph[0]);
     pixels[1] = grey_level(photograph[1]);
     pixels[2] = grey_level(photograph[2]);

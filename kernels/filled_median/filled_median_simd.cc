@@ -45,6 +45,24 @@ struct Brackets {
   VecI total;  // weight of all samples
 };
 
+// The first column from x on whose pixel is unmatched (kIsUnmatched) or matched; `width` without
+// one.
+template <bool kIsUnmatched>
+HWY_INLINE int find_column(const std::uint8_t* unmatched, int width, int x) {
+  const hn::ScalableTag<std::uint8_t> d;
+  constexpr int kBytes = static_cast<int>(hn::MaxLanes(d));
+  for (; x + kBytes <= width; x += kBytes) {
+    const auto matched = hn::Eq(hn::LoadU(d, unmatched + x), hn::Zero(d));
+    const auto found = hn::FindFirstTrue(d, kIsUnmatched ? hn::Not(matched) : matched);
+    if (found >= 0) {
+      return x + static_cast<int>(found);
+    }
+  }
+  for (; x < width && (unmatched[x] != 0) != kIsUnmatched; ++x) {
+  }
+  return x;
+}
+
 // Unmatched pixels of a row that fill a vector: runs of neighbours one after the other, because
 // runs alone are shorter than vectors. Lanes after the last run are neighbours of its pixels, too.
 class Group {
@@ -54,14 +72,11 @@ class Group {
     runs_ = 0;
     lanes_ = 0;
     while (lanes_ < kStep) {
-      for (; x < width && unmatched[x] == 0; ++x) {
+      const int first = find_column<true>(unmatched, width, x);
+      if (first == width) {
+        return width;
       }
-      if (x == width) {
-        break;
-      }
-      const int first = x;
-      for (; x < width && unmatched[x] != 0 && lanes_ + x - first < kStep; ++x) {
-      }
+      x = std::min(find_column<false>(unmatched, width, first), first + kStep - lanes_);
       add(first, x - first);
     }
     return x;
