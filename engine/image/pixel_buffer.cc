@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
 #include <utility>
 
 #include "engine/error.h"
+#include "kernels/colour_order/colour_order.h"
 
 namespace vantage {
 namespace {
@@ -44,16 +46,26 @@ PixelBuffer<T> complete(PixelBuffer<T> buffer) {
   return buffer;
 }
 
+/// Whether rows are arrays of T without gaps.
+template <typename T>
+bool has_whole_rows(const PixelBuffer<T>& buffer) {
+  constexpr auto kBytes = static_cast<std::ptrdiff_t>(sizeof(T));
+  return (buffer.channels == 1 || buffer.channel_bytes == kBytes) &&
+         (buffer.pixel_bytes == buffer.channels * kBytes || buffer.width_px == 1) &&
+         (buffer.height_px == 1 || buffer.row_bytes % kBytes == 0) &&
+         reinterpret_cast<std::uintptr_t>(buffer.data) % alignof(T) == 0;
+}
+
+template <typename T>
+bool is_reversed(const PixelBuffer<T>& buffer) {
+  return buffer.order == ChannelOrder::kBgr && buffer.channels >= 3;
+}
+
 template <typename T>
 bool is_like_image(const PixelBuffer<T>& buffer) {
-  constexpr auto kBytes = static_cast<std::ptrdiff_t>(sizeof(T));
-  const std::ptrdiff_t pixel_bytes = buffer.channels * kBytes;
-  return (buffer.channels == 1 ||
-          (buffer.channel_bytes == kBytes && buffer.order == ChannelOrder::kRgb)) &&
-         (buffer.pixel_bytes == pixel_bytes || buffer.width_px == 1) &&
-         (buffer.height_px == 1 ||
-          (buffer.row_bytes >= buffer.width_px * pixel_bytes && buffer.row_bytes % kBytes == 0)) &&
-         reinterpret_cast<std::uintptr_t>(buffer.data) % alignof(T) == 0;
+  const auto row_bytes = static_cast<std::ptrdiff_t>(sizeof(T)) * buffer.width_px * buffer.channels;
+  return has_whole_rows(buffer) && !is_reversed(buffer) &&
+         (buffer.height_px == 1 || buffer.row_bytes >= row_bytes);
 }
 
 template <typename T>
@@ -74,14 +86,24 @@ void require_finite(const Image<T>& image) {
 template <typename T>
 Photograph copy_of(const PixelBuffer<T>& buffer) {
   Image<T> image(buffer.width_px, buffer.height_px, buffer.channels);
-  const bool is_reversed = buffer.order == ChannelOrder::kBgr && buffer.channels >= 3;
+  const bool reverses = is_reversed(buffer);
+  const bool is_whole = has_whole_rows(buffer);
   const auto* const first = reinterpret_cast<const std::byte*>(buffer.data);
   for (int y = 0; y < buffer.height_px; ++y) {
+    const std::byte* const row = first + y * buffer.row_bytes;
     T* out = image.row(y);
+    if (is_whole && !reverses) {
+      std::copy_n(reinterpret_cast<const T*>(row), buffer.width_px * buffer.channels, out);
+      continue;
+    }
+    if (is_whole && buffer.channels == 3) {
+      kernels::opposite_colour_order_row(reinterpret_cast<const T*>(row), buffer.width_px, out);
+      continue;
+    }
     for (int x = 0; x < buffer.width_px; ++x) {
-      const std::byte* const pixel = first + y * buffer.row_bytes + x * buffer.pixel_bytes;
+      const std::byte* const pixel = row + x * buffer.pixel_bytes;
       for (int c = 0; c < buffer.channels; ++c) {
-        const int from = is_reversed && c < 3 ? 2 - c : c;
+        const int from = reverses && c < 3 ? 2 - c : c;
         std::memcpy(out++, pixel + from * buffer.channel_bytes, sizeof(T));
       }
     }

@@ -1,0 +1,46 @@
+#include "kernels/colour_order/colour_order.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "tests/kernels/kernel_test_utils.h"
+
+namespace vantage::kernels {
+namespace colour_order_test {
+
+class ColourOrder : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(ColourOrder);
+
+template <typename T>
+void expect_the_definition() {
+  std::mt19937 random(3);
+  for (const int width : {0, 1, 2, 15, 16, 31, 64, 65, 130, 1001}) {
+    const auto pixels_count = static_cast<std::size_t>(width);
+    UnalignedRow<T> pixels(3 * pixels_count, random() % 5);
+    for (std::size_t i = 0; i < 3 * pixels_count; ++i) {
+      pixels[i] = static_cast<T>(random() % 65536);
+    }
+    GuardedRow<T> turned(3 * pixels_count, random() % 5, T{90});
+    opposite_colour_order_row(pixels.data(), width, turned.data());
+    ASSERT_TRUE(turned.intact()) << width;
+    std::vector<T> reference(3 * pixels_count);
+    opposite_colour_order_row_ref(pixels.data(), width, reference.data());
+    ASSERT_EQ(turned.values(), reference) << width;
+    for (std::size_t x = 0; x < pixels_count; ++x) {
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        ASSERT_EQ(reference[3 * x + channel], pixels[3 * x + 2 - channel]);
+      }
+    }
+  }
+}
+
+TEST_P(ColourOrder, IsTheDefinitionIn8Bits) { expect_the_definition<std::uint8_t>(); }
+TEST_P(ColourOrder, IsTheDefinitionIn16Bits) { expect_the_definition<std::uint16_t>(); }
+TEST_P(ColourOrder, IsTheDefinitionInFloats) { expect_the_definition<float>(); }
+
+}  // namespace colour_order_test
+}  // namespace vantage::kernels
