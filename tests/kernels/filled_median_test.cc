@@ -62,9 +62,9 @@ std::vector<float> medians(const Filled& map, Kernel kernel) {
   for (int y = 0; y < map.height; ++y) {
     const auto width = static_cast<std::size_t>(map.width);
     UnalignedRow<std::uint8_t> unmatched(width, 1);
-    std::copy_n(map.unmatched.data() + map.at(0, y), width, unmatched.data());
+    std::copy_n(map.unmatched.data() + map.at(0, y), map.width, unmatched.data());
     GuardedRow<float> row(width, 1, -77);
-    std::copy_n(map.disparity_px.data() + map.at(0, y), width, row.data());
+    std::copy_n(map.disparity_px.data() + map.at(0, y), map.width, row.data());
     kernel({.disparity_px = disparity_px.data() + place(0, y),
             .disparity_pitch = pitch,
             .pixels = pixels.data() + place(0, y) * kFilledPixelBytes,
