@@ -31,8 +31,8 @@ class ReleasedGil {
   PyThreadState* thread_;
 };
 
-/// Runs `work`, which touches no Python object and computes little, without the GIL. Ctrl-C in the
-/// main thread ends loops of executions in it.
+/// Runs `work` without the GIL. `work` touches no Python object; what computes on an execution
+/// takes on_threads_of(). Ctrl-C in the main thread ends loops of executions in it.
 template <typename Work>
 auto without_gil(const Work& work) {
   try {
@@ -60,7 +60,7 @@ std::string path_of(const pybind11::object& path);
 /// A Calibration, that of a file if it is a path, or None. Throws Error, TypeError.
 std::optional<StereoCalibration> calibration_from(const pybind11::object& object);
 
-/// Registers vantage.Error and vantage.UsageError. Before calls of anything else.
+/// Registers vantage.Error and vantage.UsageError. Called first, in the main thread's import.
 void bind_calls(pybind11::module_& module);
 void bind_calibration(pybind11::module_& module);
 void bind_files(pybind11::module_& module);

@@ -33,10 +33,11 @@ void fill_with_margins(int width, int height, int margin, Execution& execution,
 
 /// The row of samples for a kernel, as fill_with_margins() has laid them out.
 kernels::SurfaceRow surface_row(const Image<std::int16_t>& samples, int margin, int y,
-                                int radius_px, int width, DisparityRange search) {
+                                const kernels::SurfaceFormat& format, int radius_px, int width,
+                                DisparityRange search) {
   return {.samples = samples.row(y + margin) + margin,
           .pitch = static_cast<std::ptrdiff_t>(samples.view().stride()),
-          .format = kernels::surface_format(search.min, search.max),
+          .format = format,
           .radius_px = radius_px,
           .width = width,
           .min_px = static_cast<float>(search.min),
@@ -54,7 +55,8 @@ void fit_each_pixel(const Mask& unmatched, int radius_px, DisparityRange search,
       });
   execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
-      kernels::SurfaceRow row = surface_row(work.samples, radius_px, y, radius_px, width, search);
+      kernels::SurfaceRow row =
+          surface_row(work.samples, radius_px, y, format, radius_px, width, search);
       const std::int16_t* const samples = row.samples;
       for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
         row.samples = samples + columns.begin;
@@ -90,19 +92,13 @@ void fit_each_block(const Mask& unmatched, int radius_px, DisparityRange search,
   execution.for_each_band(rows, [&](int first_row, int end_row) {
     for (int row = first_row; row < end_row; ++row) {
       const kernels::SurfaceRow blocks =
-          surface_row(work.samples, margin, row, radius_px, columns, search);
+          surface_row(work.samples, margin, row, format, radius_px, columns, search);
       const kernels::SurfaceBlockRow of_row = pixels(row);
       for_each_run_in_row(tiles, map_px.width(), 2 * row, [&](scheduler::Range run) {
         kernels::SurfaceRow of_run = blocks;
         of_run.samples += run.begin / 2;
-        const auto from = [&run](auto* values) {
-          return values != nullptr ? values + run.begin : nullptr;
-        };
-        kernels::fit_surface_block_row(of_run, {.upper_px = from(of_row.upper_px),
-                                                .lower_px = from(of_row.lower_px),
-                                                .upper_unmatched = from(of_row.upper_unmatched),
-                                                .lower_unmatched = from(of_row.lower_unmatched),
-                                                .width = run.size()});
+        kernels::fit_surface_block_row(
+            of_run, of_row.from_block(run.begin / 2, kernels::surface_blocks(run.size())));
       });
     }
   });

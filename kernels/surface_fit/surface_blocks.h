@@ -17,7 +17,7 @@ struct SurfaceBlockRow {
   const std::uint8_t* lower_unmatched = nullptr;
   int width = 0;  ///< pixels; the last block of an odd width has one column
 
-  /// Up to `blocks` blocks from this one on.
+  /// `blocks` blocks of the row, or fewer at its end, from block number `block` on.
   [[nodiscard]] SurfaceBlockRow from_block(int block, int blocks) const {
     const int x = 2 * block;
     const auto from = [x](auto* values) { return values != nullptr ? values + x : nullptr; };

@@ -24,7 +24,7 @@ using SurfaceTag = hwy::HWY_NAMESPACE::ScalableTag<std::int16_t>;
 using SurfaceVec = hwy::HWY_NAMESPACE::VFromD<SurfaceTag>;
 constexpr int kSurfaceStep = static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes(SurfaceTag()));
 static_assert(kSurfaceStep - 1 <= kSurfaceRowSlack);
-/// Of half as many pixels.
+/// A vector of floats holds half as many pixels as one of 16-bit integers.
 using SurfaceTagF = hwy::HWY_NAMESPACE::ScalableTag<float>;
 using SurfaceVecF = hwy::HWY_NAMESPACE::VFromD<SurfaceTagF>;
 constexpr int kSurfaceStepF = kSurfaceStep / 2;
@@ -235,7 +235,7 @@ HWY_NOINLINE void sum_surface_row(const std::int16_t* centres, int width,
   }
 }
 
-/// Of kSurfaceStepF pixels.
+/// Corrections of the planes of kSurfaceStepF pixels, from column x of `sums` on.
 HWY_INLINE SurfacePlanes surface_corrections(const SurfaceSumRow& sums, int x, float ridge) {
   namespace hn = hwy::HWY_NAMESPACE;
   const SurfaceTagF d;
@@ -300,7 +300,7 @@ class SurfaceRowFit {
     fit_first_surface_planes(centres, width, places_, sums_, first_);
     sum_surface_row<false>(centres, width, places_, &first_, sums_);
   }
-  /// Of kSurfaceStepF pixels from x on.
+  /// The planes of kSurfaceStepF pixels, from column x on.
   [[nodiscard]] HWY_INLINE SurfacePlanes planes(int x) const {
     namespace hn = hwy::HWY_NAMESPACE;
     const SurfacePlanes above = surface_corrections(sums_, x, places_.ridge);

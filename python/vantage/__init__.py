@@ -30,6 +30,7 @@ __all__ = [
 
 _loops = _weakref.WeakSet()
 
+
 class Matcher:
     """Matches rectified pairs, as `vantage match` does.
 

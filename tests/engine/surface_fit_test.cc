@@ -19,7 +19,7 @@ namespace surface_fit_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-/// Of all maps here.
+/// The search range of all maps in this file.
 constexpr DisparityRange kSearch{-40, 60};
 
 float plane(int x, int y) {

@@ -158,9 +158,26 @@ TEST_P(SharedThreadsTest, ErrorsOfTasksEndTheLoopAndFreeItsThreads) {
   }
   done = true;
   other.join();
-  for (int thread = 0; thread < executor_->thread_count(); ++thread) {
-    std::thread([&] { const SharedThreads::Call call(*threads_); }).join();
+  // No thread is lost: as many calls as there are threads at a time.
+  std::atomic<int> inside = 0;
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < executor_->thread_count(); ++caller) {
+    callers.emplace_back([&] {
+      const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+      const InterruptibleScope scope([&] { return std::chrono::steady_clock::now() > give_up; });
+      try {
+        const SharedThreads::Call call(*threads_);
+        ++inside;
+        while (inside.load() < executor_->thread_count()) {
+          sleep_ms(1);
+          check_interruption();
+        }
+      } catch (const Interrupted&) {
+        ADD_FAILURE() << inside.load() << " threads are free";
+      }
+    });
   }
+  std::for_each(callers.begin(), callers.end(), [](std::thread& caller) { caller.join(); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Executors, SharedThreadsTest,
