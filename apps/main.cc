@@ -11,12 +11,12 @@
 #include <system_error>
 #include <utility>
 
-#include "apps/commands.h"
-#include "apps/input_limits.h"
-#include "apps/process_setup.h"
-#include "apps/setting_value.h"
-#include "apps/suggestions.h"
-#include "apps/tell.h"
+#include "apps/commands/commands.h"
+#include "apps/inputs/input_limits.h"
+#include "apps/process/process_setup.h"
+#include "apps/process/tell.h"
+#include "apps/settings/setting_value.h"
+#include "apps/settings/suggestions.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
 #include "engine/quoted_text.h"

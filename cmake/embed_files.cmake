@@ -1,6 +1,6 @@
 # Writes a C++ file that holds text files: cmake -D OUTPUT=FILE.cc -D FOLDER=DIR -D NAMES=A,B -P …
 #
-# It defines the vantage::apps::embedded_file() of apps/embedded_files.h for these names.
+# It defines the vantage::apps::embedded_file() of apps/pages/embedded_files.h for these names.
 string(REPLACE "," ";" names "${NAMES}")
 set(table "")
 foreach(name IN LISTS names)
@@ -11,7 +11,7 @@ foreach(name IN LISTS names)
   string(APPEND table "    {\"${name}\",\n     R\"^file^(${text})^file^\"},\n")
 endforeach()
 file(WRITE "${OUTPUT}" "// Made by cmake/embed_files.cmake.
-#include \"apps/embedded_files.h\"
+#include \"apps/pages/embedded_files.h\"
 
 #include <stdexcept>
 #include <string>

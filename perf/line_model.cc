@@ -24,7 +24,7 @@
 namespace vantage::perf {
 namespace {
 
-constexpr int kMaxDecoderThreads = 4;  ///< as in engine/io/video_reader.cc
+constexpr int kMaxDecoderThreads = 4;  ///< as in engine/io/video/video_reader.cc
 constexpr int kWarmUp = 200;
 constexpr int kFrames = 2000;  ///< with the warm-up
 

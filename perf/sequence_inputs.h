@@ -15,8 +15,8 @@
 #include "engine/execution.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/image/stereo_packing.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/video_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/video/video_io.h"
 #include "engine/sequence/pair_source.h"
 
 namespace vantage::perf {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "perf/command_line.h"

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/refinement/refinement.h"

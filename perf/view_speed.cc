@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/simd.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "perf/command_line.h"

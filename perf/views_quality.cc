@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "engine/evaluation/view_evaluation.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "perf/command_line.h"
 #include "perf/default_paths.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/io/checksum.h"
+#include "engine/io/files/checksum.h"
 
 namespace vantage::python {
 namespace py = pybind11;

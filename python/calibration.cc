@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/rig_scale.h"
+#include "apps/inputs/rig_scale.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"

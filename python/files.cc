@@ -9,8 +9,8 @@
 #include <string>
 #include <utility>
 
-#include "engine/io/depth_io.h"
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
+#include "engine/io/maps/depth_io.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/vantage.h"
 #include "python/matched_images.h"

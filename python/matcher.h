@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/match_settings.h"
+#include "apps/settings/match_settings.h"
 #include "engine/vantage.h"
 #include "python/match_result.h"
 #include "python/unrectified_pairs.h"

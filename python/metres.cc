@@ -5,8 +5,8 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include "apps/match_settings.h"
-#include "apps/metric_settings.h"
+#include "apps/settings/match_settings.h"
+#include "apps/settings/metric_settings.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/view_geometry/depth_resolution.h"
 #include "python/arrays.h"

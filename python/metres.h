@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/rig_scale.h"
+#include "apps/inputs/rig_scale.h"
 #include "engine/vantage.h"
 #include "python/point_clouds.h"
 

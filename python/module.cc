@@ -2,7 +2,7 @@
 // documentation, is python/vantage/__init__.py.
 #include <pybind11/pybind11.h>
 
-#include "engine/io/opencv_setup.h"
+#include "engine/io/images/opencv_setup.h"
 #include "python/calls.h"
 
 PYBIND11_MODULE(_vantage, module) {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/option_groups.h"
-#include "apps/suggestions.h"
+#include "apps/settings/option_groups.h"
+#include "apps/settings/suggestions.h"
 #include "engine/error.h"
 #include "engine/quoted_text.h"
 

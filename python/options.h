@@ -2,7 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
-#include "apps/settings.h"
+#include "apps/settings/settings.h"
 #include "engine/execution.h"
 
 namespace vantage::python {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
+#include "engine/io/files/atomic_file.h"
 #include "engine/reprojection/ply_file.h"
 #include "python/arrays.h"
 #include "python/calls.h"

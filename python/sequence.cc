@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "apps/flicker_values.h"
-#include "apps/frame_step_setting.h"
-#include "apps/option_groups.h"
-#include "apps/sequence_job.h"
-#include "apps/sequence_session.h"
+#include "apps/inputs/frame_step_setting.h"
+#include "apps/reports/flicker_values.h"
+#include "apps/run/sequence_job.h"
+#include "apps/run/sequence_session.h"
+#include "apps/settings/option_groups.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/sequence/frame_iterator.h"
 #include "engine/sequence/sequence_range.h"

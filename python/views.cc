@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "apps/match_settings.h"
-#include "apps/option_groups.h"
-#include "apps/wanted_views.h"
+#include "apps/settings/match_settings.h"
+#include "apps/settings/option_groups.h"
+#include "apps/settings/wanted_views.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"

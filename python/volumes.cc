@@ -9,7 +9,7 @@
 #include <new>
 #include <utility>
 
-#include "apps/volume_output.h"
+#include "apps/settings/volume_output.h"
 #include "engine/out_of_memory.h"
 #include "python/calls.h"
 #include "python/matcher.h"

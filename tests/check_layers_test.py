@@ -10,7 +10,7 @@ CLEAN_TREE = {
     "kernels/lanes-inl.h": "int per_target();\n",
     "scheduler/pool.cc": "#include <hwloc.h>\n#include <oneapi/tbb/task_arena.h>\n#include <omp.h>\n",
     "engine/io.cc": '#include <opencv2/imgcodecs.hpp>\n#include <unistd.h>\n#include "kernels/box.h"\n',
-    "engine/io/libav_functions.h": "#pragma once\n#include <libavcodec/avcodec.h>\n",
+    "engine/io/video/libav_functions.h": "#pragma once\n#include <libavcodec/avcodec.h>\n",
     "engine/video.cc": 'extern "C" {\n#include <libavcodec/avcodec.h>\n#include <libswscale/swscale.h>\n}\n',
     "apps/main.cc": '#include <CLI/CLI.hpp>\n#include "engine/io.h"\n',
     "tests/engine/io_test.cc": "#include <gtest/gtest.h>\n#include <thread>\n",
@@ -70,7 +70,7 @@ class CheckLayersTest(PlantedTreeTest):
                           result.stdout)
 
     def test_private_header_in_a_public_one(self):
-        self.expect_violation("engine/a.h", '#pragma once\n#include "engine/io/libav_functions.h"\n',
+        self.expect_violation("engine/a.h", '#pragma once\n#include "engine/io/video/libav_functions.h"\n',
                               "engine/a.h:2: ")
 
     def test_printing_to_stderr(self):

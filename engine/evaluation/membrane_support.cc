@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/opencv_setup.h"
+#include "engine/io/images/opencv_setup.h"
 
 namespace vantage {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "engine/figures/figure_families.h"
 #include "engine/figures/pair_runs.h"
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
 #include "engine/plot/line_plot.h"
 #include "engine/plot/picture_sheet.h"
 

@@ -1,8 +1,8 @@
 #include "engine/plot/drawing.h"
 
-#include "engine/io/atomic_file.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/images/photograph_io.h"
 
 namespace vantage {
 

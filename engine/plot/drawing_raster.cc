@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "engine/io/opencv_setup.h"
+#include "engine/io/images/opencv_setup.h"
 #include "engine/plot/drawing.h"
 
 namespace vantage {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/io/base64.h"
-#include "engine/io/markup_text.h"
-#include "engine/io/png_encoder.h"
+#include "engine/io/files/base64.h"
+#include "engine/io/files/markup_text.h"
+#include "engine/io/images/png_encoder.h"
 #include "engine/plot/drawing.h"
 
 namespace vantage {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
 #include "engine/plot/axis.h"
 
 namespace vantage {

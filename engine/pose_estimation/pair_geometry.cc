@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <opencv2/calib3d.hpp>
 
-#include "engine/io/opencv_setup.h"
+#include "engine/io/images/opencv_setup.h"
 
 namespace vantage {
 namespace {

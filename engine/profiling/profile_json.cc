@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "engine/error.h"
-#include "engine/io/json_text.h"
+#include "engine/io/files/json_text.h"
 #include "engine/profiling/profile_figures.h"
 #include "engine/profiling/profile_findings.h"
 #include "engine/profiling/roofline.h"

@@ -5,7 +5,7 @@
 #include <initializer_list>
 
 #include "engine/error.h"
-#include "engine/io/file_bytes.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/rectification/calibration_entries.h"
 #include "engine/rectification/camera_pose.h"
 #include "engine/rectification/stereo_calibration.h"

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/image/intensity_rows.h"
-#include "engine/io/opencv_setup.h"
+#include "engine/io/images/opencv_setup.h"
 #include "engine/late_library.h"
 #include "scheduler/interruption.h"
 

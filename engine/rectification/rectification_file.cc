@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "engine/error.h"
-#include "engine/io/opencv_setup.h"
+#include "engine/io/images/opencv_setup.h"
 
 namespace vantage {
 namespace {

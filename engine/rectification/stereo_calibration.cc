@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "engine/error.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/files/image_size_limit.h"
 
 namespace vantage {
 namespace {

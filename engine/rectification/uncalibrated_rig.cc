@@ -9,7 +9,7 @@
 #include <opencv2/calib3d.hpp>
 
 #include "engine/error.h"
-#include "engine/io/opencv_setup.h"
+#include "engine/io/images/opencv_setup.h"
 #include "engine/order_statistics.h"
 #include "engine/rectification/rig_model.h"
 #include "engine/rectification/vertical_error.h"

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "engine/image/intensity_rows.h"
-#include "engine/io/opencv_setup.h"
+#include "engine/io/images/opencv_setup.h"
 #include "kernels/edge_snapping/edge_snapping.h"
 
 namespace vantage {

@@ -10,7 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/image/transposed.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/scene_graph/edge_check.h"

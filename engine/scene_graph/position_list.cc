@@ -8,8 +8,8 @@
 #include <string>
 
 #include "engine/error.h"
-#include "engine/io/csv_records.h"
-#include "engine/io/file_bytes.h"
+#include "engine/io/files/csv_records.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {

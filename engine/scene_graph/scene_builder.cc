@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/json_text.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/files/json_text.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/order_statistics.h"
 #include "engine/scene_graph/posed_edges.h"
 #include "engine/scene_graph/scene_folder.h"

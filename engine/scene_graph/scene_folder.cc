@@ -7,11 +7,11 @@
 #include <system_error>
 
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/temporary_name.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/temporary_name.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
 
 namespace vantage {
 namespace {

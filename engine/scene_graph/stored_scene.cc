@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/file_identity.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/file_identity.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
 #include "engine/scene_graph/scene_json.h"
 
 namespace vantage {

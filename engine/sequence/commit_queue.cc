@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "engine/io/file_descriptor.h"
+#include "engine/io/files/file_descriptor.h"
 #include "scheduler/trace.h"
 
 namespace vantage {

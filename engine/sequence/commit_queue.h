@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "engine/sequence/pending_files.h"
 #include "engine/sequence/run_journal.h"
 #include "scheduler/processor_account.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "engine/image/image.h"
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
 #include "engine/sequence/shots.h"
 
 namespace vantage {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/execution.h"
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
 #include "engine/reprojection/map_camera.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_slot.h"

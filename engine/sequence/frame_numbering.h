@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/frame_source.h"
+#include "engine/io/video/frame_source.h"
 
 namespace vantage {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/text_lines.h"
+#include "engine/io/files/text_lines.h"
 
 namespace vantage {
 namespace {

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <variant>
 
-#include "engine/io/depth_io.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/depth_io.h"
+#include "engine/io/maps/disparity_io.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/frame_worker.h"

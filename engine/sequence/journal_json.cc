@@ -12,9 +12,9 @@
 
 #include "engine/build_info.h"
 #include "engine/error.h"
-#include "engine/io/checksum.h"
-#include "engine/io/json_text.h"
-#include "engine/io/stored_name.h"
+#include "engine/io/files/checksum.h"
+#include "engine/io/files/json_text.h"
+#include "engine/io/files/stored_name.h"
 
 namespace vantage {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <system_error>
 
-#include "engine/io/temporary_name.h"
+#include "engine/io/files/temporary_name.h"
 
 namespace vantage {
 namespace {

@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/csv_records.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/stored_name.h"
+#include "engine/io/files/csv_records.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/stored_name.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/image_sequence.h"
-#include "engine/io/raw_video.h"
+#include "engine/io/video/image_sequence.h"
+#include "engine/io/video/raw_video.h"
 #include "engine/sequence/every_nth_pair.h"
 #include "engine/sequence/moving_camera_pairs.h"
 #include "engine/sequence/packed_pairs.h"

@@ -10,8 +10,8 @@
 
 #include "engine/image/disparity_range.h"
 #include "engine/image/stereo_packing.h"
-#include "engine/io/frame_source.h"
-#include "engine/io/raw_video_shape.h"
+#include "engine/io/video/frame_source.h"
+#include "engine/io/video/raw_video_shape.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/sequence/frame_range.h"
 

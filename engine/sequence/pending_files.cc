@@ -8,8 +8,8 @@
 #include <string>
 #include <system_error>
 
-#include "engine/io/file_descriptor.h"
-#include "engine/io/temporary_name.h"
+#include "engine/io/files/file_descriptor.h"
+#include "engine/io/files/temporary_name.h"
 
 namespace vantage {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
 #include "engine/matching/options/match_options.h"
 
 namespace vantage {

@@ -16,8 +16,8 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
-#include "engine/io/file_descriptor.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/io/files/file_descriptor.h"
 #include "engine/sequence/journal_json.h"
 #include "engine/sequence/sequence_layout.h"
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <system_error>
 
-#include "engine/io/checksum.h"
+#include "engine/io/files/checksum.h"
 #include "engine/sequence/journal_content.h"
 
 namespace vantage {

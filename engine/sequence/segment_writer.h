@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "engine/sequence/frame_range.h"
 #include "engine/sequence/frame_worker.h"
 #include "engine/sequence/sequence_layout.h"

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/io/file_lock.h"
-#include "engine/io/frame_times.h"
-#include "engine/io/temporary_name.h"
-#include "engine/io/video_join.h"
+#include "engine/io/files/file_lock.h"
+#include "engine/io/files/temporary_name.h"
+#include "engine/io/video/frame_times.h"
+#include "engine/io/video/video_join.h"
 
 namespace vantage {
 namespace {

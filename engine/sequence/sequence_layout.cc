@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/io/file_descriptor.h"
+#include "engine/io/files/file_descriptor.h"
 
 namespace vantage {
 namespace {

@@ -8,9 +8,9 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/io/depth_io.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/map_formats.h"
+#include "engine/io/maps/depth_io.h"
+#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_formats.h"
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/match_inputs.h"
 #include "engine/matching/previous_maps.h"

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "engine/image/stereo_display.h"
-#include "engine/io/frame_rate.h"
-#include "engine/io/preview.h"
-#include "engine/io/video_coding.h"
+#include "engine/io/images/preview.h"
+#include "engine/io/video/frame_rate.h"
+#include "engine/io/video/video_coding.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/temporal_options.h"

@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
-#include "engine/io/checksum.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/json_text.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/io/files/checksum.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/json_text.h"
 #include "engine/sequence/shots.h"
 
 namespace vantage {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/execution.h"
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
 #include "engine/sequence/frame_range.h"
 #include "engine/sequence/pair_source.h"
 #include "engine/sequence/sequence_options.h"

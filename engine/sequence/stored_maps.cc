@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "engine/io/checksum.h"
-#include "engine/io/disparity_io.h"
+#include "engine/io/files/checksum.h"
+#include "engine/io/maps/disparity_io.h"
 
 namespace vantage {
 

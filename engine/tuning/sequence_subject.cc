@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "engine/io/disparity_io.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/image_file.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/images/image_file.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
 #include "engine/sequence/memory_plan.h"
 #include "engine/tuning/candidate_ladder.h"
 #include "scheduler/frame_pipeline.h"

@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
-#include "engine/io/file_descriptor.h"
-#include "engine/io/json_text.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/io/files/file_descriptor.h"
+#include "engine/io/files/json_text.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {

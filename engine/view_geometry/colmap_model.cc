@@ -10,8 +10,8 @@
 #include <system_error>
 
 #include "engine/error.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/text_lines.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/text_lines.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "engine/error.h"
-#include "engine/io/atomic_file.h"
+#include "engine/io/files/atomic_file.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {

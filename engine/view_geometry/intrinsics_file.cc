@@ -10,8 +10,8 @@
 #include <initializer_list>
 
 #include "engine/error.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/text_lines.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/text_lines.h"
 #include "engine/rectification/calibration_entries.h"
 #include "engine/view_geometry/colmap_model.h"
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 
 #include "engine/error.h"
-#include "engine/io/file_bytes.h"
-#include "engine/io/text_lines.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/text_lines.h"
 
 namespace vantage {
 namespace {

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/setting_value.h"
+#include "apps/settings/setting_value.h"
 #include "engine/error.h"
 #include "engine/simd.h"
 #include "perf/command_line.h"

@@ -4,9 +4,9 @@
 
 #include <utility>
 
-#include "apps/match_settings.h"
-#include "apps/settings.h"
-#include "apps/toml_file.h"
+#include "apps/settings/match_settings.h"
+#include "apps/settings/settings.h"
+#include "apps/settings/toml_file.h"
 #include "engine/error.h"
 
 namespace vantage::perf {

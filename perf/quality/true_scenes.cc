@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
 #include "perf/peers.h"
 
 namespace vantage::perf {

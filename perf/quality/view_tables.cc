@@ -7,7 +7,7 @@
 
 #include "engine/error.h"
 #include "engine/evaluation/view_evaluation.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "perf/quality/markdown.h"
 #include "perf/quality/scene_groups.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "engine/generation/layered_scene.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/test_paths.h"

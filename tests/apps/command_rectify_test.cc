@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/generation/layered_scene.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/rectification/stereo_calibration.h"
 #include "engine/rectification/vertical_error.h"
 #include "tests/apps/pair_fixture.h"

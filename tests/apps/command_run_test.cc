@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "engine/image/stereo_packing.h"
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"

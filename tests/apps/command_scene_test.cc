@@ -13,8 +13,8 @@
 
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/video_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/apps/vantage_process.h"
 #include "tests/engine/unrectified_pair.h"

@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "engine/image/stereo_packing.h"
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
 #include "tests/engine/io_test_support.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/disparity_io.h"
+#include "engine/io/maps/disparity_io.h"
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage {

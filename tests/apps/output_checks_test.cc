@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/commands.h"
+#include "apps/commands/commands.h"
 #include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
 #include "tests/test_paths.h"

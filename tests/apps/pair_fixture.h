@@ -6,8 +6,8 @@
 #include <string>
 
 #include "engine/generation/book_pairs.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
 #include "tests/apps/vantage_process.h"
 #include "tests/temporary_folder.h"
 

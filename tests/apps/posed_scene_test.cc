@@ -16,7 +16,7 @@
 
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "tests/apps/vantage_process.h"
 #include "tests/temporary_folder.h"
 

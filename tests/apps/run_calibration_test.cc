@@ -9,7 +9,7 @@
 #include <string>
 
 #include "engine/image/stereo_packing.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/rectification/rectifier.h"
 #include "tests/apps/run_fixture.h"
 

@@ -8,10 +8,10 @@
 #include <filesystem>
 
 #include "engine/image/stereo_packing.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/temporary_name.h"
-#include "engine/io/video_io.h"
+#include "engine/io/files/temporary_name.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {

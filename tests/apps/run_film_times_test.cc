@@ -9,9 +9,9 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/io/libav.h"
-#include "engine/io/libav_functions.h"
-#include "engine/io/video_join.h"
+#include "engine/io/video/libav.h"
+#include "engine/io/video/libav_functions.h"
+#include "engine/io/video/video_join.h"
 #include "tests/apps/stream_fixture.h"
 
 extern "C" {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/disparity_io.h"
+#include "engine/io/maps/disparity_io.h"
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {

@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/apps/run_fixture.h"
 
 namespace vantage {

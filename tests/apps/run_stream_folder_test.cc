@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <regex>
 
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/apps/stream_fixture.h"
 
 namespace vantage {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "engine/io/disparity_io.h"
-#include "engine/io/video_io.h"
+#include "engine/io/maps/disparity_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/apps/stream_fixture.h"
 
 namespace vantage {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/image/stereo_packing.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "tests/apps/run_fixture.h"
 #include "tests/test_paths.h"
 

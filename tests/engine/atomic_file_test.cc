@@ -1,4 +1,4 @@
-#include "engine/io/atomic_file.h"
+#include "engine/io/files/atomic_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/temporary_name.h"
+#include "engine/io/files/temporary_name.h"
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {

@@ -1,4 +1,4 @@
-#include "engine/io/base64.h"
+#include "engine/io/files/base64.h"
 
 #include <gtest/gtest.h>
 

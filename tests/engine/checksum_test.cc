@@ -1,4 +1,4 @@
-#include "engine/io/checksum.h"
+#include "engine/io/files/checksum.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
-#include "engine/io/depth_io.h"
+#include "engine/io/maps/depth_io.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "engine/io/disparity_io.h"
-#include "engine/io/map_formats.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_formats.h"
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {

@@ -1,4 +1,4 @@
-#include "engine/io/disparity_io.h"
+#include "engine/io/maps/disparity_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <limits>
 
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/test_paths.h"
 

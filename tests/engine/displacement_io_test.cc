@@ -1,4 +1,4 @@
-#include "engine/io/displacement_io.h"
+#include "engine/io/maps/displacement_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {

@@ -13,7 +13,7 @@
 #include <variant>
 #include <vector>
 
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/identical_maps.h"

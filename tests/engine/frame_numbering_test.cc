@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/image_sequence.h"
+#include "engine/io/video/image_sequence.h"
 
 namespace vantage {
 namespace frame_numbering_test {

@@ -1,4 +1,4 @@
-#include "engine/io/frame_rate.h"
+#include "engine/io/video/frame_rate.h"
 
 #include <gtest/gtest.h>
 

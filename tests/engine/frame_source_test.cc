@@ -1,4 +1,4 @@
-#include "engine/io/frame_source.h"
+#include "engine/io/video/frame_source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/io/file_identity.h"
-#include "engine/io/frame_number.h"
-#include "engine/io/natural_order.h"
+#include "engine/io/files/file_identity.h"
+#include "engine/io/files/frame_number.h"
+#include "engine/io/files/natural_order.h"
 #include "tests/engine/frame_test_support.h"
 
 namespace vantage {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/frame_source.h"
-#include "engine/io/libav_scaler.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/video_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/video/frame_source.h"
+#include "engine/io/video/libav_scaler.h"
+#include "engine/io/video/video_io.h"
 #include "tests/engine/io_test_support.h"
 
 extern "C" {

@@ -1,4 +1,4 @@
-#include "engine/io/jpeg_decoder.h"
+#include "engine/io/images/jpeg_decoder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 #include <jpeglib.h>  // needs <cstdio> before it
 
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "engine/error.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/plot/heat_map.h"
 #include "engine/plot/picture_sheet.h"
 #include "engine/plot/surface_plot.h"

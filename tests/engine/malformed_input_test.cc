@@ -5,10 +5,10 @@
 #include <functional>
 #include <random>
 
-#include "engine/io/disparity_io.h"
-#include "engine/io/frame_source.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/video_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
+#include "engine/io/video/frame_source.h"
+#include "engine/io/video/video_io.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/test_sample.h"
 

@@ -1,9 +1,9 @@
-#include "engine/io/map_formats.h"
+#include "engine/io/maps/map_formats.h"
 
 #include <gtest/gtest.h>
 
-#include "engine/io/disparity_io.h"
-#include "engine/io/displacement_io.h"
+#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/displacement_io.h"
 #include "tests/temporary_folder.h"
 
 namespace vantage {

@@ -1,4 +1,4 @@
-#include "engine/io/npy_volume_file.h"
+#include "engine/io/maps/npy_volume_file.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/matching/estimation/intensity_change_fit.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/test_paths.h"

@@ -1,4 +1,5 @@
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/files/image_size_limit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +7,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
-#include "engine/io/atomic_file.h"
+#include "engine/io/files/atomic_file.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/test_paths.h"
 #include "tests/test_sample.h"

@@ -1,4 +1,4 @@
-#include "engine/io/png_decoder.h"
+#include "engine/io/images/png_decoder.h"
 
 #include <gtest/gtest.h>
 #include <libdeflate.h>

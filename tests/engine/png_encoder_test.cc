@@ -1,4 +1,4 @@
-#include "engine/io/png_encoder.h"
+#include "engine/io/images/png_encoder.h"
 
 #include <gtest/gtest.h>
 

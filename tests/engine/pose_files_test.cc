@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "engine/io/text_lines.h"
+#include "engine/io/files/text_lines.h"
 #include "engine/view_geometry/colmap_model.h"
 #include "engine/view_geometry/intrinsics_file.h"
 #include "engine/view_geometry/trajectory_file.h"

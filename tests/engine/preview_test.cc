@@ -1,4 +1,4 @@
-#include "engine/io/preview.h"
+#include "engine/io/images/preview.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/error.h"
-#include "engine/io/json_text.h"
+#include "engine/io/files/json_text.h"
 #include "tests/engine/io_test_support.h"
 
 namespace vantage {

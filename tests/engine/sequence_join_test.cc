@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/engine/video_test_support.h"
 

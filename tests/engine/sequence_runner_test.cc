@@ -12,9 +12,9 @@
 #include <sstream>
 
 #include "engine/error.h"
-#include "engine/io/disparity_io.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/video_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
+#include "engine/io/video/video_io.h"
 #include "engine/sequence/busy_clock.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_join.h"

@@ -1,4 +1,4 @@
-#include "engine/io/stored_name.h"
+#include "engine/io/files/stored_name.h"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/video_io.h"
-#include "engine/io/video_join.h"
-#include "engine/io/video_structure.h"
+#include "engine/io/video/video_io.h"
+#include "engine/io/video/video_join.h"
+#include "engine/io/video/video_structure.h"
 #include "tests/engine/video_test_support.h"
 
 namespace vantage {

@@ -10,7 +10,7 @@
 
 #include "engine/generation/layered_scene.h"
 #include "engine/image/transposed.h"
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/matching/range_estimation.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/test_paths.h"

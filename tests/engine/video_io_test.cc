@@ -1,4 +1,4 @@
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/photograph_io.h"
+#include "engine/io/images/photograph_io.h"
 #include "tests/engine/video_test_support.h"
 #include "tests/test_paths.h"
 

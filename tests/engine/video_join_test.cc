@@ -1,4 +1,4 @@
-#include "engine/io/video_join.h"
+#include "engine/io/video/video_join.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
-#include "engine/io/libav.h"
-#include "engine/io/video_io.h"
+#include "engine/io/video/libav.h"
+#include "engine/io/video/video_io.h"
 #include "tests/engine/video_test_support.h"
 
 namespace vantage {

@@ -1,6 +1,6 @@
 // Pictures of videos, of which threads make photographs concurrently.
 
-#include "engine/io/video_picture.h"
+#include "engine/io/video/video_picture.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,10 +16,10 @@
 #include <thread>
 #include <vector>
 
-#include "engine/io/frame_source.h"
-#include "engine/io/libav_scaler.h"
-#include "engine/io/photograph_io.h"
-#include "engine/io/video_io.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/video/frame_source.h"
+#include "engine/io/video/libav_scaler.h"
+#include "engine/io/video/video_io.h"
 #include "engine/sequence/sequence_runner.h"
 #include "tests/engine/video_test_support.h"
 #include "tests/temporary_folder.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/video_io.h"
+#include "engine/io/video/video_io.h"
 #include "tests/engine/video_test_support.h"
 
 namespace vantage {

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/frame_source.h"
-#include "engine/io/video_io.h"
+#include "engine/io/video/frame_source.h"
+#include "engine/io/video/video_io.h"
 #include "tests/engine/video_test_support.h"
 #include "tests/test_sample.h"
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <stdexcept>
 
-#include "engine/io/libav.h"
-#include "engine/io/photograph_to_frame.h"
+#include "engine/io/video/libav.h"
+#include "engine/io/video/photograph_to_frame.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

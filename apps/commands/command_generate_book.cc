@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+
+#include "apps/commands/commands.h"
+#include "apps/match/generated_files.h"
+#include "apps/process/command_work.h"
+#include "apps/process/outputs.h"
+#include "apps/process/tell.h"
+#include "apps/reports/run_report.h"
+#include "apps/settings/option_groups.h"
+#include "apps/settings/settings.h"
+#include "engine/generation/book_pairs.h"
+
+namespace vantage::apps {
+namespace {
+
+struct BookJob {
+  BookPairOptions pair;
+  CommonOptions common;
+  std::string output;
+};
+
+void add_book_settings(Settings& settings, BookJob& job) {
+  settings.start_group("Files");
+  Setting& output = settings.path("output", job.output, "DIR", "Output folder");
+  output.short_name = 'o';
+  output.required = true;
+
+  settings.start_group("Pair");
+  BookPairOptions& pair = job.pair;
+  std::string names;
+  for (const std::string_view name : kBookPairNames) {
+    names += (names.empty() ? "" : "|") + std::string(name);
+  }
+  Setting& pattern = settings.add("pattern", names, "Texture and shapes");
+  pattern.set = [&pair, names](const SettingValue& value) {
+    for (const std::string_view name : kBookPairNames) {
+      if (value == name) {
+        const BookPairOptions named = book_pair_options(name);
+        pair.pattern = named.pattern;
+        pair.shape = named.shape;
+        return;
+      }
+    }
+    reject_value(value, "one of " + names);
+  };
+  pattern.get = [&pair]() -> SettingValue {
+    for (const std::string_view name : kBookPairNames) {
+      const BookPairOptions named = book_pair_options(name);
+      if (named.pattern == pair.pattern && named.shape == pair.shape) {
+        return name;
+      }
+    }
+    return nullptr;
+  };
+  settings.integer("width", pair.width_px, "PX", "Width of the images");
+  settings.integer("height", pair.height_px, "PX", "Height of the images");
+  settings.integer("background-disparity", pair.background_disparity_px, "PX",
+                   "Disparity of the background");
+  settings.integer("front-disparity", pair.front_disparity_px, "PX",
+                   "Disparity of the square or rectangle; auto: 6 and 7");
+  settings.integer("narrow-disparity", pair.narrow_disparity_px, "PX",
+                   "Disparity of the narrow bar; auto: 16");
+  settings.number(
+      "noise", pair.noise_sigma, "SIGMA",
+      "Standard deviation of the noise in both images, in grey levels; writes float images");
+  settings.flag("float", pair.float_pixels, "Write float images (PFM) even without noise");
+  settings.choice<Side>("reference", pair.reference,
+                        {{"left", Side::kLeft}, {"right", Side::kRight}},
+                        "Image in which the shapes are placed");
+  add_seed_setting(settings, pair.seed);
+}
+
+}  // namespace
+
+int command_generate_book(const Arguments& arguments) {
+  BookJob job;
+  Settings settings("generate book",
+                    "Generates a synthetic pair of the book with its true disparities.");
+  add_book_settings(settings, job);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
+  settings.set_short_help(
+      {"output", "pattern", "width", "height", "background-disparity", "front-disparity",
+       "narrow-disparity", "noise", "float", "reference", "seed"},
+      {"vantage generate book -o pair", "vantage generate book --width 512 --height 512 -o pair",
+       "vantage generate book --noise 5 --seed 2 -o pair"});
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  job.pair.validate();
+  if (job.pair.shape == BookShape::kSquare) {
+    settings.refuse_idle({"narrow-disparity"}, "without bars (--pattern rds-bars or real-bars)");
+  }
+  job.common.execution.validate();
+  FileChecks checks(settings);
+  GeneratedFiles::check(
+      job.output, false,
+      {"left", "right", "left-disparity", "right-disparity", "left-occluded", "right-occluded"},
+      checks);
+  check_common_files(job.common, checks);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+
+  const BookPair pair = report.timed_compute("generate", [&] { return make_book_pair(job.pair); });
+  report.timed_file_access("write", [&] {
+    const GeneratedFiles files(job.output, false);
+    files.write("left", 0, pair.left);
+    files.write("right", 0, pair.right);
+    files.write("left-disparity", 0, pair.left_disparity);
+    files.write("right-disparity", 0, pair.right_disparity);
+    files.write("left-occluded", 0, pair.left_occluded);
+    files.write("right-occluded", 0, pair.right_occluded);
+  });
+
+  report.set_results({{"disparities", fmt::format("{}:{}", pair.search.min, pair.search.max)}});
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    tell("generate book: {}x{} pixels, search with --disparities={}:{} -> {}\n", pair.left.width(),
+         pair.left.height(), pair.search.min, pair.search.max, job.output);
+    report.print_summary();
+  }
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

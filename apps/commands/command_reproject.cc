@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "apps/commands/commands.h"
+#include "apps/inputs/calibration_settings.h"
+#include "apps/inputs/input_limits.h"
+#include "apps/inputs/kitti_cameras_choice.h"
+#include "apps/inputs/rig_scale.h"
+#include "apps/match/depth_outputs.h"
+#include "apps/process/command_work.h"
+#include "apps/process/tell.h"
+#include "apps/reports/run_report.h"
+#include "apps/settings/match_settings.h"
+#include "apps/settings/metric_settings.h"
+#include "apps/settings/option_groups.h"
+#include "apps/settings/settings.h"
+#include "engine/error.h"
+#include "engine/image/eight_bit.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
+
+namespace vantage::apps {
+namespace {
+
+struct ReprojectJob {
+  std::string map;
+  std::string image;
+  std::string unmatched;
+  std::string confidence;
+  std::optional<double> disparity_scale;
+  Side reference = Side::kLeft;
+  std::string calibration;
+  std::optional<KittiCameras> kitti_cameras;
+  RectificationOptions rectification;
+  RigScale rig;
+  DepthOutputs outputs;
+  CommonOptions common;
+};
+
+void add_reproject_settings(Settings& settings, ReprojectJob& job) {
+  settings.start_group("Files");
+  settings.positional("map", job.map, "Disparity map").required = true;
+  settings.input_path("image", job.image, "FILE",
+                      "The rectified image of the map, for the colours of --cloud and --mesh");
+  settings.input_path("unmatched", job.unmatched, "MASK.png",
+                      "Mask of the pixels that were filled, as match --unmatched writes it");
+  settings.input_path("confidence", job.confidence, "FILE",
+                      "Confidence of the map, as match --confidence writes it");
+  settings.number("disparity-scale", job.disparity_scale, "S",
+                  "Divide values of an integer file by S; auto: 256 for 16-bit PNG");
+  add_reference_setting(settings, job.reference);
+  settings.start_group("Cameras");
+  settings.input_path("calibration", job.calibration, "FILE",
+                      "Cameras of the pair, or of the photographs that it was rectified from: "
+                      "OpenCV, Middlebury or KITTI file");
+  add_kept_outline_setting(settings, job.rectification);
+  add_kitti_cameras_setting(settings, job.kitti_cameras);
+  add_rig_scale_settings(settings, job.rig);
+  settings.start_group("Output: at least one of these");
+  add_depth_output_settings(settings, job.outputs);
+  settings.start_group("Points");
+  add_cloud_settings(settings, job.outputs.options);
+}
+
+void check(const ReprojectJob& job, const Settings& settings) {
+  job.common.execution.validate();
+  job.rig.validate(job.calibration);
+  job.rectification.validate();
+  require_above_0("disparity-scale", job.disparity_scale);
+  if (!job.outputs.any()) {
+    throw UsageError(
+        "there is nothing to write, expected at least one of --depth, --cloud and --mesh");
+  }
+  job.rig.require_given(job.calibration, job.outputs.first_option());
+  if (job.calibration.empty()) {
+    settings.refuse_idle({"kept-outline", "kitti-cameras"}, "without --calibration");
+  }
+  if (job.outputs.has_points() && job.image.empty()) {
+    throw UsageError(fmt::format("--{} needs the colours of its pixels, expected --image FILE",
+                                 job.outputs.cloud.empty() ? "mesh" : "cloud"));
+  }
+  if (!job.outputs.has_points()) {
+    settings.refuse_idle({"image", "unmatched", "confidence"}, "without --cloud and --mesh");
+  }
+  if (!job.outputs.reads_unmatched()) {
+    settings.refuse_idle({"unmatched"}, "with --cloud-filled");
+  }
+  if (job.outputs.reads_confidence() == job.confidence.empty()) {
+    throw UsageError(job.confidence.empty()
+                         ? "--cloud-min-confidence and --cloud-confidence need --confidence FILE"
+                         : "--confidence has no effect without --cloud-min-confidence and "
+                           "--cloud-confidence");
+  }
+  FileChecks files(settings);
+  check_depth_outputs(job.outputs, settings, files);
+  check_common_files(job.common, files);
+}
+
+MapCamera camera_of(const ReprojectJob& job, int width_px, int height_px) {
+  if (job.calibration.empty()) {
+    return job.rig.camera(width_px, height_px, job.reference, false);
+  }
+  const StereoCalibration cameras = job.rig.read(job.calibration, job.kitti_cameras);
+  return map_camera(rectified_pair(cameras, width_px, height_px, job.rectification), job.reference,
+                    job.rig.required_unit_of(cameras));
+}
+
+/// What belongs to the map.
+struct MapFiles {
+  DisparityMap disparity_px;
+  Photograph image;
+  Mask unmatched;
+  Image<float> confidence;
+};
+
+MapFiles read_files(const ReprojectJob& job) {
+  MapFiles files;
+  files.disparity_px = read_disparity(job.map, job.disparity_scale.value_or(0));
+  if (!job.image.empty()) {
+    files.image = read_photograph(job.image);
+  }
+  if (!job.unmatched.empty()) {
+    files.unmatched = eight_bit(read_photograph(job.unmatched));
+    if (files.unmatched.channels() != 1) {
+      throw Error(fmt::format("{}: has {} channels, expected a mask of 1", job.unmatched,
+                              files.unmatched.channels()));
+    }
+  }
+  if (!job.confidence.empty()) {
+    files.confidence = read_disparity(job.confidence);
+  }
+  return files;
+}
+
+}  // namespace
+
+int command_reproject(const Arguments& arguments) {
+  ReprojectJob job;
+  Settings settings("reproject",
+                    "Turns a disparity map into depths, points or a surface in metres.");
+  add_reproject_settings(settings, job);
+  add_common_settings(settings, job.common, Work::kWithoutMatching);
+  add_input_limit_settings(settings, job.common.execution);
+  settings.set_short_help(
+      {"map", "image", "calibration", "focal-length", "baseline", "depth", "cloud", "mesh",
+       "max-depth", "cloud-step", "threads", "quiet"},
+      {"vantage reproject map.pfm --calibration calib.txt --depth depth.png",
+       "vantage reproject map.pfm --image left.png --focal-length 720 --baseline 0.12 --cloud "
+       "cloud.ply",
+       "vantage reproject map.pfm --image left.png --calibration calib.txt --mesh mesh.ply "
+       "--max-depth 20"});
+  if (!settings.read(arguments)) {
+    return kExitDone;
+  }
+  check(job, settings);
+  const std::filesystem::path image[] = {job.image};
+  choose_kitti_cameras(settings, job.common, job.calibration, image, job.kitti_cameras);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
+
+  const MapFiles read = report.timed_file_access("read", [&] { return read_files(job); });
+  const int width = read.disparity_px.width();
+  const int height = read.disparity_px.height();
+  const CloudSource source{.disparity_px = read.disparity_px.view(),
+                           .colours = &read.image,
+                           .unmatched = read.unmatched.view(),
+                           .confidence = read.confidence.view(),
+                           .camera = camera_of(job, width, height)};
+  const DepthFiles files = report.timed_compute(
+      "depth", [&] { return make_depth_files(job.outputs, source, execution, report); });
+  report.timed_file_access("write", [&] { write_depth_files(job.outputs, files); });
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    tell("reproject: {}x{} pixels, focal length {:.6g} px, baseline {:.6g} m\n", width, height,
+         source.camera.scale.focal_length_px, source.camera.scale.baseline);
+    for (const std::string& summary : files.summaries) {
+      tell("reproject: {}\n", summary);
+    }
+    report.print_summary();
+  }
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

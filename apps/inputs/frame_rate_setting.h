@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/settings/settings.h"
+#include "engine/io/video/frame_rate.h"
+
+namespace vantage::apps {
+
+/// A rate such as 25, 29.97 or 30000/1001.
+Setting& add_frame_rate_setting(Settings& settings, std::string name, FrameRate& field,
+                                std::string help);
+/// As above; the field is empty for "auto".
+Setting& add_frame_rate_setting(Settings& settings, std::string name,
+                                std::optional<FrameRate>& field, std::string help);
+
+}  // namespace vantage::apps

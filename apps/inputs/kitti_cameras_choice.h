@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "apps/inputs/list_columns.h"
+#include "apps/settings/option_groups.h"
+#include "apps/settings/settings.h"
+#include "engine/rectification/kitti_cameras.h"
+
+namespace vantage::apps {
+
+/// Where `cameras` is empty and the calibration has both pairs of KITTI's cameras: sets it to those
+/// that the folders of `images` name, else to the grey ones, and tells which on stderr. Does
+/// nothing for other calibrations, or without one. Throws Error if it cannot be read.
+void choose_kitti_cameras(const Settings& settings, const CommonOptions& common,
+                          const std::string& calibration,
+                          std::span<const std::filesystem::path> images,
+                          std::optional<KittiCameras>& cameras);
+
+/// Warns once where pairs of a list have calibrations of both pairs of KITTI's cameras, and neither
+/// `chosen` nor the folders of their images say which: the grey ones are used.
+void warn_of_grey_cameras(const Settings& settings, const CommonOptions& common,
+                          const ListColumns& columns, std::optional<KittiCameras> chosen);
+
+}  // namespace vantage::apps

@@ -1,0 +1,133 @@
+#include "apps/inputs/pair_input.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+#include <utility>
+
+#include "apps/inputs/automatic_disparities.h"
+#include "apps/inputs/calibration_settings.h"
+#include "apps/inputs/given_maps.h"
+#include "apps/inputs/kitti_cameras_choice.h"
+#include "apps/inputs/rectification_check.h"
+#include "apps/settings/match_settings.h"
+#include "engine/error.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/disparity_io.h"
+#include "engine/rectification/stereo_calibration.h"
+
+namespace vantage::apps {
+namespace {
+
+void refuse_idle_match_options(const Settings& settings) {
+  Settings matching("match", "");
+  MatchOptions unused;
+  add_match_settings(matching, unused);
+  constexpr std::string_view kWithMaps = "with --left-disparity and --right-disparity";
+  settings.refuse_idle({"strip-width", "band-height", "iterations-per-pass"}, kWithMaps);
+  const SettingValue options = matching.values();
+  for (const auto& [name, value] : options.items()) {
+    settings.refuse_idle({name.c_str()}, kWithMaps);
+  }
+}
+
+RectifiedPair rectify(const StereoCalibration& calibration, const RectificationOptions& options,
+                      Execution& execution, RunReport& report, PairWithMaps& pair) {
+  Rectifier rectifier(calibration, pair.left.width(), pair.left.height(), options);
+  RectifiedPair cameras = rectifier.pair();
+  if (rectifier.needs_rectification()) {
+    const UnrectifiedImages& read = pair.unrectified.emplace(
+        UnrectifiedImages{std::move(rectifier), std::move(pair.left), std::move(pair.right)});
+    report.timed_compute("rectify", [&] {
+      read.rectifier.apply(read.left, Side::kLeft, pair.left, execution);
+      read.rectifier.apply(read.right, Side::kRight, pair.right, execution);
+    });
+  }
+  return cameras;
+}
+
+}  // namespace
+
+void add_pair_settings(Settings& settings, PairInput& pair) {
+  settings.positional("left", pair.left, "Left image").required = true;
+  settings.positional("right", pair.right, "Right image of the same size").required = true;
+  settings.input_path("left-disparity", pair.left_disparity, "FILE",
+                      "Disparity map of the left image; without maps, the pair is matched");
+  settings.input_path("right-disparity", pair.right_disparity, "FILE",
+                      "Disparity map of the right image");
+  settings.number("disparity-scale", pair.disparity_scale, "S",
+                  "Divide values of integer disparity files by S; auto: 256 for 16-bit PNG");
+  settings.input_path("calibration", pair.calibration, "FILE",
+                      "Cameras, to rectify the pair first if needed: OpenCV, Middlebury or KITTI "
+                      "file; given maps belong to rectified images");
+  add_kept_outline_setting(settings, pair.rectification);
+  add_kitti_cameras_setting(settings, pair.kitti_cameras);
+  add_rectification_check_setting(settings, pair.check_rectification);
+}
+
+void check_pair(const PairInput& pair, const Settings& settings) {
+  if (pair.left_disparity.empty() != pair.right_disparity.empty()) {
+    throw UsageError(
+        "one of --left-disparity and --right-disparity is missing, expected both or none");
+  }
+  require_above_0("disparity-scale", pair.disparity_scale);
+  if (pair.has_maps()) {
+    refuse_idle_match_options(settings);
+  } else {
+    pair.match.validate();
+    if (pair.match.disparities_y) {
+      throw UsageError("--disparities-y cannot be used here: views need rectified pairs");
+    }
+    if (pair.disparity_scale) {
+      throw UsageError("--disparity-scale has no effect without --left-disparity");
+    }
+  }
+  pair.rectification.validate();
+  if (pair.calibration.empty()) {
+    settings.refuse_idle({"kept-outline", "kitti-cameras"}, "without --calibration");
+  }
+}
+
+SettingValue reported_settings(const Settings& settings, const PairInput& pair) {
+  return pair.has_maps() ? settings.values() : reported_settings(settings, pair.match);
+}
+
+PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOptions& common,
+                       Execution& execution, RunReport& report) {
+  PairWithMaps result;
+  report.timed_file_access("read", [&] {
+    result.left = read_photograph(pair.left);
+    result.right = read_photograph(pair.right);
+    if (pair.has_maps()) {
+      const double scale = pair.disparity_scale.value_or(0);
+      result.maps.left.disparity_px = read_disparity(pair.left_disparity, scale);
+      result.maps.right.disparity_px = read_disparity(pair.right_disparity, scale);
+      require_agreeing_maps(result.maps);
+    }
+  });
+  if (!pair.calibration.empty()) {
+    const std::filesystem::path images[] = {pair.left, pair.right};
+    choose_kitti_cameras(settings, common, pair.calibration, images, pair.kitti_cameras);
+    result.cameras = rectify(read_stereo_calibration(pair.calibration, pair.kitti_cameras),
+                             pair.rectification, execution, report, result);
+  }
+  if (pair.check_rectification) {
+    warn_unless_rectified(settings, common, expects_negative_disparities(pair.match), result.left,
+                          result.right, report);
+  }
+  if (!pair.has_maps()) {
+    const bool is_found = pair.match.disparities_auto;
+    choose_disparities(settings, common, result.left, result.right, pair.match, execution, report);
+    const StereoMatcher matcher(pair.match, execution);
+    report.add_match(report.timed_compute([&] {
+      MatchReport match;
+      matcher.match(result.left, result.right, {}, result.maps, &match);
+      return match;
+    }));
+    warn_of_cut_range(settings, common, result.left, result.right, result.maps, pair.match,
+                      is_found, execution, report);
+  }
+  return result;
+}
+
+}  // namespace vantage::apps

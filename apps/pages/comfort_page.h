@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "apps/settings/setting_value.h"
+#include "engine/comfort/comfort_summary.h"
+#include "engine/io/video/frame_rate.h"
+#include "engine/io/video/frame_times.h"
+
+namespace vantage::apps {
+
+/// A report on comfort and what it is about.
+struct ComfortPage {
+  const ComfortReport& report;
+  const std::map<int, FrameComfort>& frames;
+  FrameRate rate;           ///< of `frames`
+  const FrameTimes* times;  ///< of all frames; null: the rate is constant
+  std::string input;        ///< its name
+
+  [[nodiscard]] double seconds(int frame) const {
+    return times != nullptr ? times->seconds(frame) : frame / rate.per_second();
+  }
+};
+
+/// The JSON of comfort.json.
+SettingValue comfort_values(const ComfortPage& page);
+/// comfort.html: needs no other file and no network.
+std::string make_comfort_page(const ComfortPage& page);
+
+}  // namespace vantage::apps

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "apps/reports/run_report.h"
+#include "apps/settings/option_groups.h"
+#include "apps/settings/settings.h"
+#include "engine/execution.h"
+
+namespace vantage::apps {
+
+/// What a command works with after its options have been checked: its report, and its threads.
+/// Starts the trace and forces the instruction set. Throws UsageError for an unknown one.
+struct CommandWork {
+  CommandWork(const Settings& settings, const CommonOptions& common)
+      : CommandWork(settings, common, settings.values()) {}
+  /// `reported`: the settings in the report.
+  CommandWork(const Settings& settings, const CommonOptions& common, SettingValue reported);
+
+  RunReport report;
+  Execution execution;
+};
+
+}  // namespace vantage::apps

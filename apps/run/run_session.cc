@@ -1,0 +1,310 @@
+#include "apps/run/run_session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "apps/inputs/automatic_disparities.h"
+#include "apps/inputs/frame_step_setting.h"
+#include "apps/inputs/kitti_cameras_choice.h"
+#include "apps/inputs/list_columns.h"
+#include "apps/inputs/rectification_check.h"
+#include "apps/process/interrupt.h"
+#include "apps/process/tell.h"
+#include "apps/run/resumed_run.h"
+#include "apps/run/stream_run.h"
+#include "engine/error.h"
+#include "engine/io/files/file_identity.h"
+#include "engine/io/files/json_text.h"
+#include "engine/matching/range_estimation.h"
+#include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/sequence_range.h"
+#include "scheduler/interruption.h"
+
+namespace vantage::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+void require_no_interrupt() {
+  if (interrupt_flag().load()) {
+    throw scheduler::Interrupted();
+  }
+}
+
+/// The first pair that a run takes from a stream; those before it are dropped.
+void read_first_streamed_pair(PairSource& pairs, int first, FramePair& pair) {
+  pairs.skip_to(first);
+  if (!pairs.fetch(pair)) {
+    require_no_interrupt();
+    throw Error(fmt::format("{}: the stream ends before it", pairs.describe(first)));
+  }
+  pairs.decode(pair);
+  pairs.skip_to(first);
+}
+
+RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSession& session) {
+  RunIdentity identity;
+  SettingValue values = settings.result_values();
+  values["fps"] = to_string(job.sequence.frame_rate);
+  for (const auto& [name, poses] :
+       {std::pair("pose", &job.views.poses), {"path", &job.views.path}}) {
+    if (!poses->empty()) {
+      values[name] = to_value(poses->entries);
+    }
+  }
+  identity.settings = values.dump(-1, ' ', false, SettingValue::error_handler_t::replace);
+  identity.sources = sources_of(job, settings);
+  identity.inputs = session.pairs->identities();
+  if (!job.cameras_file().empty()) {
+    FileIdentity calibration;
+    calibration.add(fs::path(job.cameras_file()).filename().string(), job.cameras_file());
+    identity.inputs.push_back((job.unrectified.empty() ? "calibration: " : "unrectified: ") +
+                              calibration.to_string());
+  }
+  if (!job.poses.empty()) {
+    FileIdentity poses;
+    poses.add(fs::path(job.poses).filename().string(), job.poses);
+    identity.inputs.push_back("poses: " + poses.to_string());
+  }
+  if (!job.input.pairs.empty()) {
+    const std::vector<std::string> columns = column_identities(*session.pairs);
+    identity.inputs.insert(identity.inputs.end(), columns.begin(), columns.end());
+  }
+  identity.frame_count = session.pairs->is_stream() ? kUnknownFrames : session.pairs->pair_count();
+  const PairSource::Sound sound = session.pairs->sound();
+  identity.frame_times = session.pairs->frame_times();
+  if (job.sequence.sound && !sound.file.empty()) {
+    identity.sound_file = fs::absolute(sound.file);
+    identity.sound_first_frame = sound.first_frame;
+    identity.sound_rate = session.pairs->frame_rate().value_or(FrameRate());
+  }
+  return identity;
+}
+
+std::string size_text(std::size_t bytes) {
+  const double mib = static_cast<double>(bytes) / (1 << 20);
+  return mib < 1024 ? fmt::format("{:.0f} MiB", mib) : fmt::format("{:.2f} GiB", mib / 1024);
+}
+
+std::string outputs_text(const RunJob& job) {
+  std::string text;
+  const SequenceLayout layout(job.output, job.sequence);
+  for (const OutputStream& stream : layout.streams()) {
+    text +=
+        (text.empty() ? "" : ", ") + stream.name + (stream.as_video ? "." + stream.extension : "");
+  }
+  if (job.sequence.saves(SequenceOutput::kComfort)) {
+    text += (text.empty() ? "" : ", ") + layout.comfort_report("html").filename().string();
+  }
+  return text;
+}
+
+std::string strips_text(const scheduler::ChainPlan& plan) {
+  const scheduler::PassPlan& pass = plan.passes.front();
+  std::string text = fmt::format("{} strip{} of {} columns x {} band{} of {} rows", pass.strips,
+                                 pass.strips == 1 ? "" : "s", pass.strip_columns, pass.bands,
+                                 pass.bands == 1 ? "" : "s", pass.band_rows);
+  if (plan.passes.size() > 1) {
+    text += fmt::format(", {} passes", plan.passes.size());
+  }
+  if (plan.steps > 1) {
+    text += fmt::format(", {} steps of {} rows", plan.steps, plan.step_rows);
+  }
+  return text;
+}
+
+AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Settings& settings) {
+  if (!job.sequence.baselines.empty()) {
+    return no_tuning("tuning is for pairs, but there are more images");
+  }
+  if (!job.unrectified.empty()) {
+    return no_tuning("tuning is for rectified pairs");
+  }
+  if (job.memory_bytes) {
+    return no_tuning("--memory is given, so the cost model plans");
+  }
+  return apply_tuning(job.tuning,
+                      {.use = TunedUse::kRun,
+                       .match = job.sequence.match,
+                       .execution = job.common.execution,
+                       .in_flight_given = job.in_flight.has_value(),
+                       .left = first.left,
+                       .right = first.right},
+                      settings.command(), job.common.quiet);
+}
+
+std::string counted_frames(const RunJob& job, int frame_count) {
+  if (reads_stream(job)) {
+    return "a stream of pairs";
+  }
+  return job.sequence.baselines.size() < 2 ? fmt::format("{} pairs", frame_count)
+                                           : fmt::format("{} frames of {} images", frame_count,
+                                                         job.sequence.baselines.size() + 1);
+}
+
+}  // namespace
+
+std::string RunSession::part_name(const RunJob& job) {
+  std::string name;
+  if (job.frames) {
+    name = fmt::format("frames-{}-{}", job.frames->first, job.frames->end - 1);
+  }
+  if (job.shard) {
+    name += fmt::format("{}{}-of-{}", name.empty() ? "" : "-", job.shard->index, job.shard->count);
+  }
+  return name.empty() ? "all" : name;
+}
+
+RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
+  FileChecks files = check_files(job, settings);
+  RunSession session;
+  if (reads_stream(job)) {
+    job.input.stop = &interrupt_flag();
+  }
+  open_source(job, session);
+  session.selection.shard = job.shard;
+  for (const fs::path& file : session.pairs->files()) {
+    files.add_input(file);
+  }
+  for (const auto& [file, cameras] : session.columns.calibrations) {
+    files.add_input(file);
+  }
+  const int input_frames = session.pairs->input_frames();
+  if (job.frames && job.frames->end > input_frames && !job.common.quiet) {
+    tell("run: warning: --frames {}-{} ends after the input, which has {} frames (0 to {})\n",
+         job.frames->first, job.frames->end - 1, input_frames, input_frames - 1);
+  }
+  FramePair first;
+  report.timed_file_access("open", [&] {
+    if (session.pairs->is_stream()) {
+      const FrameRun frames = run_of(
+          session.selection, dependence_of(job.sequence, SequenceLayout(job.output, job.sequence)),
+          session.selection.own());
+      read_first_streamed_pair(*session.pairs, frames.frames.first - frames.lead_in, first);
+    } else {
+      read_first_pair(*session.pairs, first);
+    }
+  });
+  Execution execution(job.common.execution);
+  warn_of_grey_cameras(settings, job.common, session.columns, job.kitti_cameras);
+  std::optional<StereoCalibration> calibration;
+  if (!job.cameras_file().empty()) {
+    choose_kitti_cameras(settings, job.common, job.cameras_file(), session.pairs->files(),
+                         job.kitti_cameras);
+    report.set_settings(reported_settings(settings, job.sequence.match));
+    calibration = job.rig.read(job.cameras_file(), job.kitti_cameras);
+  }
+  prepare_pairs(job, calibration, job.sequence.is_metric(), first, execution, session);
+  if (job.check_rectification && job.unrectified.empty()) {
+    warn_unless_rectified(settings, job.common, expects_negative_disparities(job.sequence.match),
+                          first.left, first.right, report);
+  }
+  const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
+  const auto find_range = [&] {
+    // Estimating the range of a video without an index decodes the whole video.
+    if (const std::optional<DisparityRange> known = range_of_run_to_resume(job)) {
+      return known;
+    }
+    const auto found =
+        find_sequence_range(*session.pairs, rectify, execution,
+                            job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero);
+    if (session.pairs->is_stream()) {
+      require_no_interrupt();
+    }
+    return found;
+  };
+  MatchOptions& match = job.sequence.match;
+  use_ranges(session.columns, match);
+  report.set_settings(reported_settings(settings, match));
+  choose_disparities(settings, job.common, find_range, match, report);
+  session.pairs->forget_start();
+  job.sequence.validate();
+  job.sequence.frame_rate =
+      job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
+  session.identity = identity_of(job, settings, session);
+  session.tuning = find_tuning(job, first, settings);
+  session.execution = with_tuned(job.common.execution, session.tuning.settings);
+  const int threads = thread_count(session.execution, execution.machine());
+  session.executor = fmt::format("{} thread{} ({})", threads, threads == 1 ? "" : "s",
+                                 execution.executor().name());
+  const std::optional<int> in_flight =
+      job.in_flight ? job.in_flight : session.tuning.settings.frames_in_flight;
+  SequenceOptions planned = job.sequence;
+  planned.match.disparities = session.columns.widest_with(planned.match.disparities);
+  session.memory =
+      plan_memory(planned, {in_flight, job.memory_bytes}, session.shape, first, session.execution);
+  return session;
+}
+
+std::string text_of_size(const RunJob& job, const RunSession& session) {
+  return fmt::format("{} of {}x{} pixels", session.takes_any_size(job) ? ", the first" : "",
+                     session.shape.source.width_px, session.shape.source.height_px);
+}
+
+std::string describe_plan(const RunJob& job, const RunSession& session) {
+  const FrameRange own = session.selection.own();
+  std::string text;
+  const auto line = [&](const std::string& content) { text += "run: " + content + "\n"; };
+  line(fmt::format(
+      "{}{}{}{}{}", counted_frames(job, session.selection.frame_count), text_of_size(job, session),
+      job.input.every.takes_all() ? "" : ", one every " + to_text(job.input.every),
+      !job.unrectified.empty()          ? ", rectified in the search"
+      : session.shape.is_rectified_here ? ", rectified on the fly"
+                                        : "",
+      own == FrameRange{0, session.selection.frame_count}
+          ? ""
+          : fmt::format("; this part: {}", own.empty() ? "none" : "frames " + to_string({own}))));
+  for (const std::string& remark : session.pairs->remarks()) {
+    line("note: " + remark);
+  }
+  if (session.identity.times_at(job.sequence.frame_rate) != nullptr && job.output != "-" &&
+      SequenceLayout(job.output, job.sequence).has_videos()) {
+    line("note: the input has a variable frame rate; videos keep its times");
+  }
+  if (!session.poses_note.empty()) {
+    line("note: " + session.poses_note);
+  }
+  const std::string range = to_text(job.sequence.match.disparities);
+  line(fmt::format("{}, disparities {}, {}", job.sequence.match.chosen(),
+                   session.columns.all_have_ranges ? "of the list"
+                   : session.columns.widest        ? range + " or of the list"
+                                                   : range,
+                   strips_text(session.memory.chain)));
+  line(fmt::format("{}, {} frame{} in flight; memory about {}{}{}", session.executor,
+                   session.memory.in_flight, session.memory.in_flight == 1 ? "" : "s",
+                   size_text(session.memory.total_bytes),
+                   session.takes_any_size(job) ? " for pairs of this size" : "",
+                   job.memory_bytes ? " of " + size_text(*job.memory_bytes) : std::string()));
+  if (!session.tuning.summary.empty()) {
+    line(fmt::format("{} ({})", session.tuning.summary,
+                     session.tuning.report["file"].get<std::string>()));
+  }
+  line(fmt::format("writes {} to {}", outputs_text(job),
+                   job.output == "-" ? "standard output" : job.output));
+  return text;
+}
+
+RunIdentity read_run(const std::string& folder, RunJob& job, FileChecks& files) {
+  Settings settings("run", "");
+  add_run_settings(settings, job);
+  const fs::path journal = fs::path(folder) / ".vantage";
+  RunIdentity identity = RunJournal::read_identity(journal);
+  try {
+    settings.set_values(parse_json(identity.settings, "settings"));
+    job.output = folder;
+    complete_sequence(job, false);
+  } catch (const UsageError& error) {
+    throw Error(fmt::format("{}: cannot be read as the settings of a run: {}",
+                            (journal / "run.json").string(), error.what()));
+  }
+  job.sequence.frame_rate = job.frame_rate.value_or(FrameRate());
+  add_run_outputs(SequenceLayout(folder, job.sequence),
+                  job.sequence.saves(SequenceOutput::kComfort), "DIR", files);
+  return identity;
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "apps/process/outputs.h"
+#include "apps/process/progress.h"
+#include "apps/run/sequence_job.h"
+#include "apps/settings/applied_tuning.h"
+#include "apps/settings/option_groups.h"
+#include "apps/settings/settings.h"
+#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/work_plan.h"
+
+namespace vantage::apps {
+
+/// Everything a user can set about a run.
+struct RunJob : SequenceJob {
+  std::string output;                               ///< folder
+  StreamFormat stream_format = StreamFormat::kY4m;  ///< of standard output
+  std::optional<FrameRate> frame_rate;              ///< empty: the input's, else 25
+  std::optional<Shard> shard;
+  std::optional<std::size_t> memory_bytes;
+  bool dry_run = false;
+  bool resume = false;
+  bool overwrite = false;
+  bool force = false;
+  bool check_rectification = true;
+  ProgressStyle progress = ProgressStyle::kAuto;
+  CommonOptions common;
+  TuningSource tuning;
+
+  /// `progress`, or none with --quiet.
+  [[nodiscard]] ProgressStyle shown_progress() const {
+    return common.quiet ? ProgressStyle::kNone : progress;
+  }
+};
+
+/// Binds all fields of `job`: the options of 'vantage run'.
+void add_run_settings(Settings& settings, RunJob& job);
+
+/// Reads the files of poses and completes all fields. Throws UsageError for invalid fields and
+/// combinations. Reads no other files.
+void complete(RunJob& job, const Settings& settings);
+
+/// Adds to `files` what runs write to the folder of `layout`, which `option` names.
+void add_run_outputs(const SequenceLayout& layout, bool has_comfort, const std::string& option,
+                     FileChecks& files);
+/// All files that a run reads and writes, except the frames, which are unknown before the input is
+/// opened.
+FileChecks check_files(const RunJob& job, const Settings& settings);
+
+}  // namespace vantage::apps

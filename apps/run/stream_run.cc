@@ -1,0 +1,134 @@
+#include "apps/run/stream_run.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "apps/commands/commands.h"
+#include "apps/process/interrupt.h"
+#include "apps/process/progress.h"
+#include "apps/process/tell.h"
+#include "engine/error.h"
+#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/stream_runner.h"
+
+namespace vantage::apps {
+namespace {
+
+constexpr const char* kStream = "-";
+
+}  // namespace
+
+bool reads_stream(const RunJob& job) { return job.input.stereo == kStream; }
+
+bool writes_stream(const RunJob& job) { return job.output == kStream; }
+
+namespace {
+
+/// Frames of standard input are there once.
+void check_input_stream(const RunJob& job) {
+  if (job.resume || job.force) {
+    throw UsageError(fmt::format(
+        "--{} is given, but the input is standard input, which cannot be read again; --overwrite "
+        "starts again",
+        job.resume ? "resume" : "force"));
+  }
+  if (job.shard) {
+    throw UsageError(
+        "--shard is given and --stereo is -, expected a file: standard input is read once");
+  }
+  const SequenceOptions& options = job.sequence;
+  const char* per_shot = options.search_range_per_shot    ? "search-range"
+                         : options.preview_range_per_shot ? "preview-range"
+                         : options.depth_scale.scope == DepthVideoScale::Scope::kShot
+                             ? "depth-range"
+                         : options.intensity_fit == FitScope::kShot ? "intensity-fit"
+                                                                    : nullptr;
+  if (per_shot != nullptr) {
+    throw UsageError(fmt::format(
+        "--{} is shot and --stereo is -, expected another value: it needs all frames of a "
+        "shot before the first; store the stream in a file",
+        per_shot));
+  }
+}
+
+}  // namespace
+
+void check_stream(const RunJob& job, const Settings& settings) {
+  if (reads_stream(job)) {
+    check_input_stream(job);
+  } else {
+    settings.refuse_idle({"raw-video"}, "without --stereo -");
+  }
+  if (!writes_stream(job)) {
+    settings.refuse_idle({"stream-format"}, "without --output -");
+    return;
+  }
+  settings.refuse_idle({"resume", "overwrite", "force", "shard", "video", "measure-flicker", "crf",
+                        "no-sound", "depth-codec", "format"},
+                       "with --output -");
+  const SequenceOptions& options = job.sequence;
+  const SequenceLayout layout(job.output, options);
+  if (options.saves(SequenceOutput::kComfort) || layout.streams().size() != 1 ||
+      !is_picture(layout.streams().front().output)) {
+    throw UsageError(
+        "--output is -, expected --save with one output of pictures: preview, views, stereo, "
+        "depth-video, unmatched, right-unmatched, holes, sources or cyclopean-occlusion");
+  }
+  if (options.needs_matched_shots() || options.search_range_per_shot ||
+      options.depth_scale.scope == DepthVideoScale::Scope::kShot) {
+    throw UsageError(
+        "an option is per shot and --output is -, expected no shots: they need the whole input "
+        "first");
+  }
+}
+
+int run_to_stream(const RunJob& job, const RunSession& session, Execution& execution,
+                  RunReport& report) {
+  if (session.identity.times_at(job.sequence.frame_rate) != nullptr && !job.common.quiet) {
+    tell(
+        "run: warning: the input has a variable frame rate, which y4m and rawvideo cannot hold: "
+        "the output has {} frames per second throughout; a video in a folder (--output DIR) keeps "
+        "the times\n",
+        to_string(job.sequence.frame_rate));
+  }
+  StreamedVideoWriter writer(stdout, job.stream_format, job.sequence.frame_rate);
+  SequenceReport sequence;
+  {
+    Progress progress("run", "frames",
+                      reads_stream(job) ? ProgressStyle::kNone : job.shown_progress());
+    SequenceRun run = session.run(job, *session.pairs, nullptr, session.memory.in_flight);
+    run.frame_size = session.shape.source;
+    run.stop = &interrupt_flag();
+    run.on_progress = [&](const SequenceProgress& now) {
+      progress.update(now.frames_done, now.frames_total, now.cells);
+    };
+    sequence = run_stream(job.sequence, run, writer, execution);
+  }
+  report.set_memory(sequence.memory);
+  report.add_compute_seconds(sequence.compute_seconds);
+  report.add_cells(sequence.cells);
+  if (sequence.frames > 0) {
+    report.set_plan(sequence.plan);
+  }
+  report.set_results({{"frames", sequence.frames},
+                      {"skipped", sequence.skipped.size()},
+                      {"interrupted", sequence.interrupted},
+                      {"width_px", sequence.width_px},
+                      {"height_px", sequence.height_px},
+                      {"frames_per_second_of_video", to_string(job.sequence.frame_rate)}});
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    for (const FrameRemark& skipped : sequence.skipped) {
+      tell("run: skipped frame {}: {}\n", skipped.frame, skipped.text);
+    }
+    tell("run: {} frame{} of {}x{} pixels -> standard output{}\n", sequence.frames,
+         sequence.frames == 1 ? "" : "s", sequence.width_px, sequence.height_px,
+         sequence.interrupted ? " (interrupted)" : "");
+  }
+  return sequence.interrupted       ? kExitInterrupted
+         : sequence.skipped.empty() ? kExitDone
+                                    : kExitSkipped;
+}
+
+}  // namespace vantage::apps

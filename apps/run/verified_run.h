@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "apps/process/progress.h"
+#include "apps/settings/setting_value.h"
+#include "engine/sequence/run_verification.h"
+#include "engine/sequence/sequence_layout.h"
+
+namespace vantage::apps {
+
+/// verify_run() with progress on stderr under the name of `command`, ended by signals.
+RunVerification verify_with_progress(const SequenceLayout& layout, const std::string& command,
+                                     ProgressStyle style);
+
+/// For reports.
+SettingValue to_value(const RunVerification& verification);
+
+/// The first problem of the run in `folder`, in one line that names the file.
+std::string describe_damage(const RunVerification& verification, const std::string& folder);
+
+}  // namespace vantage::apps

@@ -1,0 +1,173 @@
+#include "apps/scene/posed_scene_images.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/text_lines.h"
+#include "engine/io/video/frame_source.h"
+#include "engine/rectification/kitti_cameras.h"
+#include "engine/view_geometry/colmap_model.h"
+#include "engine/view_geometry/intrinsics_file.h"
+#include "engine/view_geometry/trajectory_file.h"
+
+namespace vantage::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxTimeDifference_s = 0.02;
+
+std::vector<SceneImage> images_of_colmap(const fs::path& folder, const std::string& images,
+                                         const fs::path& intrinsics) {
+  if (!intrinsics.empty()) {
+    throw UsageError("--intrinsics is given with a COLMAP model, which has its own cameras");
+  }
+  if (!fs::is_directory(images)) {
+    throw UsageError(
+        fmt::format("--images is '{}', expected the folder of the model's images", images));
+  }
+  std::vector<SceneImage> result;
+  for (const ColmapImage& image : read_colmap_model(folder)) {
+    const fs::path file = fs::path(images) / image.name;
+    if (!fs::exists(file)) {
+      throw Error(fmt::format("{} is missing, expected an image of {}", file.string(),
+                              (folder / "images.txt").string()));
+    }
+    result.push_back({.file = file,
+                      .position = {},
+                      .camera = SceneCamera{.lens = image.camera.camera, .pose = image.pose},
+                      .camera_size = image.camera.size});
+  }
+  return result;
+}
+
+std::vector<fs::path> files_of(const std::string& images) {
+  const std::unique_ptr<FrameSource> source = open_frame_source(images);
+  if (!source->video_file().empty()) {
+    throw UsageError(fmt::format("--images is '{}', a video; expected image files", images));
+  }
+  std::vector<fs::path> files;
+  for (int i = 0; i < source->frame_count(); ++i) {
+    files.emplace_back(source->describe(i));
+  }
+  return files;
+}
+
+/// The times that the names of all files tell; empty if one does not.
+std::vector<double> times_of(const std::vector<fs::path>& files) {
+  std::vector<double> times;
+  for (const fs::path& file : files) {
+    const std::optional<double> time = finite_number(file.stem().string());
+    if (!time) {
+      return {};
+    }
+    times.push_back(*time);
+  }
+  return times;
+}
+
+/// The number of the pose nearest in time to each image; −1 if none is near.
+std::vector<int> nearest_poses(const std::vector<double>& image_times,
+                               const std::vector<double>& pose_times) {
+  std::vector<int> numbers;
+  for (const double time : image_times) {
+    const auto nearest = std::ranges::min_element(
+        pose_times, {}, [&](double other) { return std::abs(other - time); });
+    numbers.push_back(std::abs(*nearest - time) <= kMaxTimeDifference_s
+                          ? static_cast<int>(nearest - pose_times.begin())
+                          : -1);
+  }
+  return numbers;
+}
+
+SceneImage image_of(const fs::path& file, const SizedCamera& camera, const CameraPose& pose) {
+  return {.file = file,
+          .position = {},
+          .camera = SceneCamera{.lens = camera.camera, .pose = pose},
+          .camera_size = camera.size};
+}
+
+std::vector<SceneImage> in_order(const std::vector<fs::path>& files, const SizedCamera& camera,
+                                 const std::vector<CameraPose>& poses, const fs::path& file) {
+  if (files.size() != poses.size()) {
+    throw Error(fmt::format("{} has {} poses, expected {} as there are images", file.string(),
+                            poses.size(), files.size()));
+  }
+  std::vector<SceneImage> result;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    result.push_back(image_of(files[i], camera, poses[i]));
+  }
+  return result;
+}
+
+std::vector<SceneImage> images_of_trajectory(const Trajectory& trajectory, const fs::path& file,
+                                             const std::vector<fs::path>& files,
+                                             const SizedCamera& camera,
+                                             std::vector<std::string>& remarks) {
+  const std::vector<double> times = times_of(files);
+  if (trajectory.times_s.empty() || times.empty()) {
+    return in_order(files, camera, trajectory.poses, file);
+  }
+  const std::vector<int> numbers = nearest_poses(times, trajectory.times_s);
+  std::vector<SceneImage> result;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (numbers[i] >= 0) {
+      result.push_back(
+          image_of(files[i], camera, trajectory.poses[static_cast<std::size_t>(numbers[i])]));
+    }
+  }
+  if (result.empty() && files.size() == trajectory.poses.size()) {
+    return in_order(files, camera, trajectory.poses, file);  // names are numbers, not times
+  }
+  if (result.empty()) {
+    throw Error(
+        fmt::format("{}: no pose is within {} s of an image, expected images named after "
+                    "their times, or as many as there are poses",
+                    file.string(), kMaxTimeDifference_s));
+  }
+  if (result.size() < files.size()) {
+    remarks.push_back(fmt::format(
+        "{} of {} images are left out: {} has no pose within {} s of them",
+        files.size() - result.size(), files.size(), file.string(), kMaxTimeDifference_s));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::string& images,
+                                           const fs::path& intrinsics,
+                                           std::vector<std::string>& remarks) {
+  if (images.empty()) {
+    throw UsageError("--poses is given without --images, expected both");
+  }
+  if (fs::is_directory(poses)) {
+    return images_of_colmap(poses, images, intrinsics);
+  }
+  const std::vector<std::uint8_t> bytes = read_file_bytes(poses);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::vector<fs::path> files = files_of(images);
+  const bool is_opencv = has_opencv_poses(text);
+  if (!is_opencv && intrinsics.empty()) {
+    throw UsageError(
+        fmt::format("--poses is '{}', a trajectory without a camera; expected "
+                    "--intrinsics too",
+                    poses.string()));
+  }
+  const fs::path& camera_file = intrinsics.empty() ? poses : intrinsics;
+  const SizedCamera camera = read_intrinsics(camera_file, kitti_camera_of(files).value_or(0));
+  if (is_opencv) {
+    return in_order(files, camera, parse_opencv_poses(text, poses.string()), poses);
+  }
+  return images_of_trajectory(parse_trajectory(text, poses.string()), poses, files, camera,
+                              remarks);
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "apps/settings/settings.h"
+#include "engine/io/video/video_coding.h"
+#include "engine/sequence/sequence_options.h"
+
+namespace vantage::apps {
+
+/// Binds the settings of the depth video: --depth-range and --depth-codec.
+void add_depth_video_settings(Settings& settings, DepthVideoScale& scale, VideoCoding& coding);
+
+}  // namespace vantage::apps

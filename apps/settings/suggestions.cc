@@ -1,0 +1,229 @@
+#include "apps/settings/suggestions.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+
+namespace vantage::apps {
+namespace {
+
+/// Number of insertions, deletions, substitutions and exchanges of neighbours that turn `a` into
+/// `b`.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> edits(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        edits[i][j] = i + j;
+        continue;
+      }
+      const bool is_equal = a[i - 1] == b[j - 1];
+      edits[i][j] = std::min(
+          {edits[i - 1][j] + 1, edits[i][j - 1] + 1, edits[i - 1][j - 1] + (is_equal ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        edits[i][j] = std::min(edits[i][j], edits[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return edits[a.size()][b.size()];
+}
+
+std::string_view without_dashes(std::string_view name) {
+  return name.substr(std::min(name.find_first_not_of('-'), name.size()));
+}
+
+/// An answer to words that other programs use.
+struct WordAnswer {
+  std::initializer_list<std::string_view> words;
+  std::string_view needs;  ///< option that a command must have for the answer to be true of it
+  std::string_view answer;
+};
+
+const auto& option_answers() {
+  static const std::array kAnswers = {
+      WordAnswer{{"max-disp", "max-disparity", "maxdisp", "min-disp", "min-disparity", "mindisp",
+                  "num-disparities", "num-disp", "ndisp", "numdisparities", "disp-range",
+                  "disparity-range", "search-range"},
+                 "--disparities",
+                 "--disparities MIN:MAX is the range to search, both ends included"},
+      WordAnswer{
+          {"block-size", "blocksize", "window-size", "win-size", "sad-window", "kernel-size"},
+          "--window",
+          "--window PX is the side of the window of --method ssd; presets have no window"},
+      WordAnswer{{"uniqueness", "uniqueness-ratio"},
+                 "--confidence-threshold",
+                 "--confidence-threshold X rejects uncertain pixels"},
+      WordAnswer{{"speckle-window", "speckle-window-size", "speckle-range", "speckles"},
+                 "--speckle-size",
+                 "--speckle-size PX rejects small regions"},
+      WordAnswer{
+          {"disp12-max-diff", "max-diff", "lr-check", "left-right-check", "lrc", "consistency"},
+          "--cross-check",
+          "--cross-check PX compares the left map with the right one"},
+      WordAnswer{{"p1", "p2", "smoothness"},
+                 "--epsilon-prior",
+                 "--epsilon-prior and --sigma-prior set the smoothness of maps"},
+      WordAnswer{{"color", "colors", "use-color"},
+                 "--colour",
+                 "--colour luma|channels selects what is compared in colour images"},
+      WordAnswer{{"colormap", "color-map", "colourmap", "colour-map", "cmap", "jet", "visualize"},
+                 "--preview",
+                 "--preview FILE writes the map in false colours; there is one colour scale"},
+      WordAnswer{{"colormap", "color-map", "colourmap", "colour-map", "cmap", "jet", "visualize"},
+                 "--sequence",
+                 "--save preview writes the maps in false colours; there is one colour scale"},
+      WordAnswer{
+          {"stride", "skip", "nth", "subsample", "frame-step"},
+          "--every",
+          "--every N takes every Nth pair, --every 4s one pair every four seconds of a video, "
+          "--frames A-B the frames from A to B"},
+      WordAnswer{{"start", "end", "start-frame", "end-frame", "first-frame", "last-frame",
+                  "num-frames", "frame-range", "from", "to"},
+                 "--sequence",
+                 "--frames A-B selects the frames from A to B, counted from 0"},
+      WordAnswer{{"depth-map", "depthmap", "point-cloud", "pointcloud", "ply"},
+                 "--depth",
+                 "--depth FILE writes depths in metres, --cloud FILE.ply points, --mesh FILE.ply a "
+                 "surface"},
+      WordAnswer{
+          {"depth", "depth-map", "depthmap", "cloud", "point-cloud", "pointcloud", "ply", "mesh"},
+          "--save",
+          "--save depth,cloud,mesh writes depths in metres, points and a surface of each frame"},
+      WordAnswer{
+          {"depth", "depth-map", "depthmap", "cloud", "point-cloud", "pointcloud", "ply", "mesh"},
+          "--disparities",
+          "'vantage match --depth FILE' and 'vantage reproject' write depths in metres, with "
+          "--cloud points"},
+      WordAnswer{{"resize", "scale", "downscale", "downsample", "resolution"},
+                 "--disparities",
+                 "images are matched at their size; resize them first"},
+      WordAnswer{{"jobs", "cores", "workers", "nproc", "cpus", "num-threads", "nthreads", "j"},
+                 "--threads",
+                 "--threads N is the number of threads"},
+      WordAnswer{{"gpu", "cuda", "device", "opencl"},
+                 "--threads",
+                 "all work runs on the processor, on --threads N"},
+      WordAnswer{{"verbose", "debug", "v", "log-level"},
+                 "--report",
+                 "messages are printed without --quiet; --report FILE writes all figures"},
+      WordAnswer{{"silent", "q"}, "--quiet", "--quiet prints errors only"},
+      WordAnswer{
+          {"out", "outfile", "out-dir", "outdir", "output-dir", "output-file", "output-folder"},
+          "--output",
+          "-o or --output is the path to the results"},
+      WordAnswer{{"algorithm", "algo", "matcher", "mode", "sgbm", "bm", "realtime", "fast",
+                  "balanced", "quality", "best"},
+                 "--preset",
+                 "--preset realtime|fast|balanced|quality selects how pairs are matched"},
+      WordAnswer{{"calib", "camera", "cameras", "intrinsics", "extrinsics"},
+                 "--calibration",
+                 "--calibration FILE is the path to the cameras"},
+      WordAnswer{{"version"}, "", "'vantage --version' prints the version"},
+  };
+  return kAnswers;
+}
+
+const auto& command_answers() {
+  static const std::array kAnswers = {
+      WordAnswer{{"disparity", "disparities", "stereo", "disp", "sgbm", "sgm", "bm", "compute",
+                  "matching"},
+                 "",
+                 "'vantage match' computes disparity maps"},
+      WordAnswer{
+          {"depth", "depthmap", "depth-map", "cloud", "pointcloud", "point-cloud", "mesh"},
+          "",
+          "'vantage match --depth FILE' writes depths of a pair in metres (--cloud: points), "
+          "'vantage reproject' those of a disparity map"},
+      WordAnswer{{"calibrate", "calibration", "undistort", "align"},
+                 "",
+                 "'vantage rectify' estimates cameras and rectifies photographs"},
+      WordAnswer{{"render", "synthesis", "synthesize", "synthesise", "interpolate", "novel-view"},
+                 "",
+                 "'vantage synth' renders new views of a pair"},
+      WordAnswer{{"video", "movie", "sequence", "batch", "process"},
+                 "",
+                 "'vantage run' computes maps and views of sequences and videos"},
+      WordAnswer{{"viewer", "html", "web", "show", "display"},
+                 "",
+                 "'vantage view' writes a page that shows new views in a browser"},
+      WordAnswer{{"evaluate", "evaluation", "compare", "metrics", "score", "error", "psnr"},
+                 "",
+                 "'vantage eval' compares a map or a view with the truth"},
+      WordAnswer{{"benchmark", "bench", "perf", "time"},
+                 "",
+                 "'vantage profile' shows where the time of match or run goes"},
+      WordAnswer{{"slurm", "cluster", "sbatch"},
+                 "",
+                 "'vantage submit' runs a sequence on a Slurm cluster"},
+      WordAnswer{{"join", "concat"}, "", "'vantage merge' joins the parts of a run"},
+      WordAnswer{{"resume", "continue"}, "", "'vantage run --resume' continues a run"},
+      WordAnswer{{"version"}, "", "'vantage --version' prints the version"},
+      WordAnswer{{"commands", "list", "usage"}, "", "'vantage help' lists the commands"},
+  };
+  return kAnswers;
+}
+
+template <typename Answers>
+std::string_view answer_to(std::string_view word, const Answers& all,
+                           const std::vector<std::string>& known) {
+  for (const WordAnswer& one : all) {
+    const bool is_true = one.needs.empty() || std::ranges::find(known, without_dashes(one.needs),
+                                                                without_dashes) != known.end();
+    if (is_true && std::ranges::find(one.words, word) != one.words.end()) {
+      return one.answer;
+    }
+  }
+  return "";
+}
+
+template <typename Answers>
+std::string hint(const std::string& name, const Answers& words,
+                 const std::vector<std::string>& known, std::string_view list) {
+  if (const std::string_view answer = answer_to(without_dashes(name), words, known);
+      !answer.empty()) {
+    return fmt::format(": {}", answer);
+  }
+  if (const std::string nearest = nearest_name(name, known); !nearest.empty()) {
+    return fmt::format(", the nearest known one is '{}'", nearest);
+  }
+  return fmt::format("; '{}' lists all", list);
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view text, const std::vector<std::string>& candidates) {
+  constexpr std::size_t kLettersPerEdit = 4;
+  constexpr std::size_t kMinPrefix = 3;
+  const std::string_view letters = without_dashes(text);
+  std::string nearest;
+  std::size_t min_distance = (letters.size() + 1) / kLettersPerEdit + 1;
+  for (const std::string& candidate : candidates) {
+    const bool is_beginning = letters.size() >= kMinPrefix && candidate.starts_with(text);
+    const std::size_t distance = is_beginning ? 1 : edit_distance(text, candidate);
+    if (distance < min_distance) {
+      min_distance = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+std::string hint_for_option(const std::string& command, const std::string& name,
+                            const std::vector<std::string>& known) {
+  return hint(name, option_answers(), known, fmt::format("vantage {} --help-all", command));
+}
+
+std::string hint_for_command(const std::string& name, const std::vector<std::string>& known) {
+  return hint(name, command_answers(), known, "vantage help");
+}
+
+std::string hint_for_key(const std::string& key, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_name(key, known);
+  return nearest.empty() ? fmt::format(", expected one of {}", fmt::join(known, ", "))
+                         : fmt::format(", the nearest known one is '{}'", nearest);
+}
+
+}  // namespace vantage::apps

@@ -1,0 +1,98 @@
+#include "apps/settings/toml_file.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "engine/error.h"
+#include "engine/quoted_text.h"
+
+namespace vantage::apps {
+namespace {
+
+/// Whether values may be tables, down to any depth.
+enum class Tables { kRefused, kAccepted };
+
+SettingValue from_toml(const toml::node& node, const std::string& path, std::string_view key,
+                       Tables tables) {
+  if (const auto* truth = node.as_boolean()) {
+    return truth->get();
+  }
+  if (const auto* integer = node.as_integer()) {
+    return integer->get();
+  }
+  if (const auto* number = node.as_floating_point()) {
+    return number->get();
+  }
+  if (const auto* text = node.as_string()) {
+    return text->get();
+  }
+  if (const auto* array = node.as_array()) {
+    SettingValue list = SettingValue::array();
+    for (const toml::node& member : *array) {
+      list.push_back(from_toml(member, path, key, tables));
+    }
+    return list;
+  }
+  if (const auto* table = node.as_table(); table != nullptr && tables == Tables::kAccepted) {
+    SettingValue object = SettingValue::object();
+    for (const auto& [name, member] : *table) {
+      object[std::string(name.str())] = from_toml(member, path, name.str(), tables);
+    }
+    return object;
+  }
+  throw UsageError(fmt::format(
+      "{}:{}: '{}' is a table or a date, expected a number, a text, true, false or a list of these",
+      path, node.source().begin.line, quotable(key)));
+}
+
+SettingValue read_file(const std::string& path, std::string_view expected, Tables tables) {
+  std::ifstream file(path, std::ios::binary);
+  file.peek();  // a folder opens like a file and fails here
+  if (!file.is_open() || file.bad()) {
+    throw Error(fmt::format("{}: cannot be read, expected {}", path, expected));
+  }
+  std::ostringstream content;
+  content << file.rdbuf();
+  try {
+    const toml::table table = toml::parse(content.str(), path);
+    SettingValue values = SettingValue::object();
+    for (const auto& [key, node] : table) {
+      values[std::string(key.str())] = from_toml(node, path, key.str(), tables);
+    }
+    return values;
+  } catch (const toml::parse_error& error) {
+    throw UsageError(fmt::format("{}:{}: not TOML: {}", path, error.source().begin.line,
+                                 quotable(error.description())));
+  }
+}
+
+}  // namespace
+
+SettingValue read_toml(const std::string& path) {
+  return read_file(path, "a TOML file with settings", Tables::kRefused);
+}
+
+SettingValue read_toml_document(const std::string& path) {
+  return read_file(path, "a TOML file", Tables::kAccepted);
+}
+
+std::string to_toml(const SettingValue& value) {
+  if (value.is_array()) {
+    std::string list = "[";
+    for (const SettingValue& member : value) {
+      list += (list.size() > 1 ? ", " : "") + to_toml(member);
+    }
+    return list + "]";
+  }
+  if (value.is_string()) {
+    std::ostringstream text;
+    text << toml::value<std::string>(value.get<std::string>());
+    return text.str();
+  }
+  return value.dump();  // JSON's numbers and truth values are TOML's
+}
+
+}  // namespace vantage::apps

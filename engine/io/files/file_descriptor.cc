@@ -1,0 +1,42 @@
+#include "engine/io/files/file_descriptor.h"
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <cerrno>
+
+namespace vantage {
+
+bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) {
+      return false;
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
+  }
+  return true;
+}
+
+bool write_all_at(int descriptor, std::size_t offset, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno != EINTR) {
+      return false;
+    }
+    const auto done = static_cast<std::size_t>(std::max<ssize_t>(written, 0));
+    bytes = bytes.subspan(done);
+    offset += done;
+  }
+  return true;
+}
+
+void flush_folder(const std::filesystem::path& folder) {
+  const FileDescriptor open_folder(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (open_folder.valid()) {
+    (void)::fsync(open_folder.get());
+  }
+}
+
+}  // namespace vantage

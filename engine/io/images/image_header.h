@@ -1,0 +1,18 @@
+#pragma once
+
+#include "engine/io/files/file_bytes.h"
+
+namespace vantage {
+
+enum class ImageFormat { kPng, kJpeg, kTiff, kPnm, kPfm, kBmp, kWebp, kExr };
+
+/// The format according to the first bytes, whatever the file's name. Throws Error for anything
+/// else.
+ImageFormat detect_image_format(const FileBytes& file);
+
+/// Checks before decoding: dimensions in bounds and, for BMP, JPEG, WebP and EXR, that the file is
+/// complete, for TIFF and JPEG that it can hold so many pixels. For the formats that OpenCV
+/// decodes, except PNG (see png_structure.h). Throws Error.
+void check_image_header(const FileBytes& file, ImageFormat format);
+
+}  // namespace vantage

@@ -1,0 +1,72 @@
+#include "engine/io/images/opencv_setup.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <iostream>
+#include <new>
+#include <opencv2/core.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <streambuf>
+
+namespace vantage {
+namespace {
+
+std::atomic<bool> is_host_of_opencv =
+    true;                          // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+thread_local int quiet_depth = 0;  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+
+/// Forwards the output of threads that are not quiet to another buffer.
+class ThreadFilter : public std::streambuf {
+ public:
+  explicit ThreadFilter(std::streambuf* target) : target_(target) {}
+
+ protected:
+  int_type overflow(int_type c) override {
+    if (quiet_depth > 0 || traits_type::eq_int_type(c, traits_type::eof())) {
+      return traits_type::not_eof(c);
+    }
+    return target_->sputc(traits_type::to_char_type(c));
+  }
+  std::streamsize xsputn(const char* text, std::streamsize count) override {
+    return quiet_depth > 0 ? count : target_->sputn(text, count);
+  }
+  int sync() override { return quiet_depth > 0 ? 0 : target_->pubsync(); }
+
+ private:
+  std::streambuf* target_;
+};
+
+}  // namespace
+
+void prepare_opencv() {
+  static const bool prepared = [] {
+    // OpenCV reads this when it first opens such a file. A value set by the user is kept.
+    ::setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 0);
+    if (is_host_of_opencv) {
+      cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+      // GDAL, which reads some TIFFs, would print its own errors.
+      ::setenv("CPL_LOG", "/dev/null", 0);
+      // cv::error() would print every exception before throwing it.
+      cv::redirectError([](int code, const char*, const char*, const char*, int, void*) {
+        if (code == cv::Error::StsNoMem) {
+          throw std::bad_alloc();  // as everywhere else
+        }
+        return 0;
+      });
+      cv::setNumThreads(1);
+    }
+    if (std::cerr.rdbuf() != nullptr) {
+      // Never freed: std::cerr is used until the process ends.
+      std::cerr.rdbuf(new ThreadFilter(std::cerr.rdbuf()));
+    }
+    return true;
+  }();
+  (void)prepared;
+}
+
+void leave_opencv_to_host() { is_host_of_opencv = false; }
+
+QuietOpenCv::QuietOpenCv() { ++quiet_depth; }
+QuietOpenCv::~QuietOpenCv() { --quiet_depth; }
+
+}  // namespace vantage

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "engine/image/photograph.h"
+
+namespace vantage {
+
+/// Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR (by OpenCV) and PFM: 8-bit, 16-bit and float; grey,
+/// RGB or RGBA. The file's content determines the format, not its name; PNM values are stretched
+/// from the file's maximum value to the type's. EXIF orientation, gamma and colour profiles are
+/// ignored. Reuses `memory` if it has the photograph's depth and size. Throws Error naming the file
+/// when it is missing, empty, truncated, not an image, too large according to its header, or float
+/// with NaN or infinity. Thread rule: may be called concurrently.
+Photograph read_photograph(const std::filesystem::path& path, Photograph memory = {});
+
+/// Encodes an image file to `bytes`, whose memory is reused: the content that write_photograph()
+/// writes to `path`. Errors as write_photograph().
+void encode_photograph(const std::filesystem::path& path, const Photograph& photograph,
+                       std::vector<std::uint8_t>& bytes);
+
+/// Writes by extension (.png .jpg .tiff .bmp .ppm .pgm .webp .exr .pfm), atomically. Throws Error
+/// when the folder cannot be written or the format cannot hold the depth or channels, UsageError
+/// for an unknown extension. Thread rule: may be called concurrently.
+void write_photograph(const std::filesystem::path& path, const Photograph& photograph);
+
+/// Writes a mask as 8-bit grey PNG, atomically. Throws as write_photograph() does.
+void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask);
+
+}  // namespace vantage

@@ -1,0 +1,172 @@
+#include "engine/io/images/pnm.h"
+
+#include <fmt/format.h>
+
+#include <type_traits>
+
+#include "engine/error.h"
+#include "engine/io/files/text_header.h"
+
+namespace vantage {
+namespace {
+
+struct PnmHeader {
+  int kind = 0;  ///< 1..6, the digit after the P
+  int width = 0;
+  int height = 0;
+  int channels = 1;
+  int max_value = 255;
+
+  [[nodiscard]] bool is_text() const { return kind <= 3; }
+  [[nodiscard]] bool is_bitmap() const { return kind == 1 || kind == 4; }
+  [[nodiscard]] std::size_t values_per_row() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+  }
+};
+
+void check_value(const FileBytes& file, const PnmHeader& header, int value, int x, int y) {
+  if (value > header.max_value) {
+    file.fail(fmt::format("its value {} at pixel ({}, {}) is above the maximum {} of its header",
+                          value, x, y, header.max_value));
+  }
+}
+
+template <typename T>
+Image<T> decode_text(const FileBytes& file, const PnmHeader& header, TextHeader& words) {
+  Image<T> image(header.width, header.height, header.channels);
+  for (int y = 0; y < header.height; ++y) {
+    for (std::size_t i = 0; i < header.values_per_row(); ++i) {
+      const int value = words.number("data");
+      check_value(file, header, value, static_cast<int>(i) / header.channels, y);
+      image.row(y)[i] = static_cast<T>(value);
+    }
+  }
+  return image;
+}
+
+/// Text bitmaps need no blanks between their digits.
+Image<std::uint8_t> decode_text_bitmap(const FileBytes& file, const PnmHeader& header,
+                                       std::size_t offset) {
+  Image<std::uint8_t> image(header.width, header.height);
+  for (int y = 0; y < header.height; ++y) {
+    for (int x = 0; x < header.width; ++x) {
+      TextHeader blanks(file, offset, TextHeader::Comments::kHash);
+      blanks.skip_blanks();
+      const std::uint8_t digit = file.byte(blanks.offset());
+      if (digit != '0' && digit != '1') {
+        file.fail(fmt::format("its data at pixel ({}, {}) is neither 0 nor 1", x, y));
+      }
+      image.at(x, y) = digit == '0' ? 255 : 0;
+      offset = blanks.offset() + 1;
+    }
+  }
+  return image;
+}
+
+Image<std::uint8_t> decode_binary_bitmap(const FileBytes& file, const PnmHeader& header,
+                                         std::size_t begin) {
+  const std::size_t row_bytes = (static_cast<std::size_t>(header.width) + 7) / 8;
+  (void)file.part(begin, row_bytes * static_cast<std::size_t>(header.height));
+  Image<std::uint8_t> image(header.width, header.height);
+  for (int y = 0; y < header.height; ++y) {
+    const auto row = file.part(begin + row_bytes * static_cast<std::size_t>(y), row_bytes);
+    for (int x = 0; x < header.width; ++x) {
+      image.at(x, y) = (row[static_cast<std::size_t>(x) / 8] >> (7 - x % 8) & 1) != 0 ? 0 : 255;
+    }
+  }
+  return image;
+}
+
+template <typename T>
+Image<T> decode_binary(const FileBytes& file, const PnmHeader& header, std::size_t begin) {
+  const std::size_t row_bytes = header.values_per_row() * sizeof(T);
+  (void)file.part(begin, row_bytes * static_cast<std::size_t>(header.height));
+  Image<T> image(header.width, header.height, header.channels);
+  for (int y = 0; y < header.height; ++y) {
+    const auto row = file.part(begin + row_bytes * static_cast<std::size_t>(y), row_bytes);
+    for (std::size_t i = 0; i < header.values_per_row(); ++i) {
+      int value = row[i * sizeof(T)];
+      if constexpr (sizeof(T) == 2) {
+        value = value << 8 | row[i * 2 + 1];
+      }
+      check_value(file, header, value, static_cast<int>(i) / header.channels, y);
+      image.row(y)[i] = static_cast<T>(value);
+    }
+  }
+  return image;
+}
+
+}  // namespace
+
+PnmImage decode_pnm(const FileBytes& file) {
+  PnmHeader header;
+  header.kind = file.byte(1) - '0';
+  if (file.byte(0) != 'P' || header.kind < 1 || header.kind > 6) {
+    file.fail("is not a PNM file, expected it to begin with P1 to P6");
+  }
+  header.channels = header.kind == 3 || header.kind == 6 ? 3 : 1;
+  TextHeader words(file, 2, TextHeader::Comments::kHash);
+  header.width = words.number("width");
+  header.height = words.number("height");
+  file.check_dimensions(header.width, header.height);
+  if (!header.is_bitmap()) {
+    header.max_value = words.number("largest value");
+    if (header.max_value < 1 || header.max_value > 65535) {
+      file.fail(fmt::format("its largest value is {}, expected 1..65535", header.max_value));
+    }
+  }
+  if (!is_blank(file.byte(words.offset()))) {
+    file.fail("its header does not end with white space");
+  }
+  const std::size_t begin = words.offset() + 1;
+  if (header.is_text()) {
+    // At least one digit each, so that a short file is refused before allocation.
+    (void)file.part(begin, header.values_per_row() * static_cast<std::size_t>(header.height));
+  }
+
+  PnmImage result;
+  result.max_value = header.max_value;
+  auto& pixels = result.photograph.pixels;
+  if (header.kind == 1) {
+    pixels = decode_text_bitmap(file, header, begin);
+  } else if (header.kind == 4) {
+    pixels = decode_binary_bitmap(file, header, begin);
+  } else if (header.max_value > 255) {
+    pixels = header.is_text() ? decode_text<std::uint16_t>(file, header, words)
+                              : decode_binary<std::uint16_t>(file, header, begin);
+  } else {
+    pixels = header.is_text() ? decode_text<std::uint8_t>(file, header, words)
+                              : decode_binary<std::uint8_t>(file, header, begin);
+  }
+  return result;
+}
+
+std::vector<std::uint8_t> encode_pnm(const Photograph& photograph) {
+  const bool wide = std::holds_alternative<Image<std::uint16_t>>(photograph.pixels);
+  const std::string header =
+      fmt::format("{}\n{} {}\n{}\n", photograph.channels() == 3 ? "P6" : "P5", photograph.width(),
+                  photograph.height(), wide ? 65535 : 255);
+  std::vector<std::uint8_t> bytes(header.begin(), header.end());
+  std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        if constexpr (std::is_integral_v<T>) {
+          const int values = image.width() * image.channels();
+          bytes.reserve(bytes.size() + sizeof(T) * static_cast<std::size_t>(values) *
+                                           static_cast<std::size_t>(image.height()));
+          for (int y = 0; y < image.height(); ++y) {
+            for (int i = 0; i < values; ++i) {
+              if constexpr (sizeof(T) == 2) {
+                bytes.push_back(static_cast<std::uint8_t>(image.row(y)[i] >> 8));
+              }
+              bytes.push_back(static_cast<std::uint8_t>(image.row(y)[i] & 255));
+            }
+          }
+        } else {
+          throw Error("PNM holds 8- and 16-bit values only");
+        }
+      },
+      photograph.pixels);
+  return bytes;
+}
+
+}  // namespace vantage

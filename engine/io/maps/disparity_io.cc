@@ -1,0 +1,132 @@
+#include "engine/io/maps/disparity_io.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/images/image_file.h"
+#include "engine/io/maps/map_formats.h"
+#include "engine/io/maps/npy.h"
+
+namespace vantage {
+namespace {
+
+constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+
+/// Replaces non-finite values by NaN.
+DisparityMap finite_of(const Image<float>& image) {
+  DisparityMap map(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y) {
+    std::transform(image.row(y), image.row(y) + image.width(), map.row(y),
+                   [](float d) { return std::isfinite(d) ? d : kUnknown; });
+  }
+  return map;
+}
+
+template <typename T>
+DisparityMap from_integers(const Image<T>& image, double scale) {
+  DisparityMap map(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const T value = image.at(x, y);
+      map.at(x, y) = value == 0 ? kUnknown : static_cast<float>(value / scale);
+    }
+  }
+  return map;
+}
+
+}  // namespace
+
+DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
+  if (!(scale >= 0) || !std::isfinite(scale)) {
+    throw UsageError(fmt::format("disparity scale is {}, expected a number above 0", scale));
+  }
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  const FileBytes file(bytes, path.string());
+  if (is_npy(file)) {
+    return finite_of(decode_npy(file));
+  }
+  const bool is_png = file.has_at(0, "\x89PNG");
+  const DecodedImage stored = decode_image(file);
+  if (stored.photograph.channels() != 1) {
+    file.fail(fmt::format("has {} channels, expected a disparity map of 1",
+                          stored.photograph.channels()));
+  }
+  return std::visit(
+      [&]<typename T>(const Image<T>& image) -> DisparityMap {
+        if constexpr (std::is_same_v<T, float>) {
+          return finite_of(image);
+        } else {
+          const bool has_default = is_png && sizeof(T) == 2;
+          if (scale == 0 && !has_default) {
+            file.fail(
+                "holds integers, expected a scale to divide them by (`scale`, `disparity-scale`; "
+                "256 for 16-bit PNG)");
+          }
+          return from_integers(image, scale > 0 ? scale : kIntegerDisparityScale);
+        }
+      },
+      stored.photograph.pixels);
+}
+
+Image<float> read_float_image(const std::filesystem::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  const FileBytes file(bytes, path.string());
+  if (is_npy(file)) {
+    return finite_of(decode_npy(file));
+  }
+  const DecodedImage stored = decode_image(file);
+  const auto* const floats = std::get_if<Image<float>>(&stored.photograph.pixels);
+  const int channels = stored.photograph.channels();
+  if (floats == nullptr || channels != 1) {
+    file.fail(fmt::format("holds {} in {} channel{}, expected floats in 1 channel",
+                          floats == nullptr ? "integers" : "floats", channels,
+                          channels == 1 ? "" : "s"));
+  }
+  return finite_of(*floats);
+}
+
+void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
+                      std::vector<std::uint8_t>& bytes) {
+  const MapFormat* const format = find_map_format(path, MapContent::kDisparity);
+  if (format == nullptr) {
+    throw UsageError(fmt::format("cannot write {}: unknown disparity extension '{}', expected {}",
+                                 path.string(), path.extension().string(),
+                                 listed_map_formats(MapContent::kDisparity)));
+  }
+  if (disparity.empty() || disparity.channels() != 1) {
+    throw Error(
+        fmt::format("cannot write {}: expected a disparity map of at least 1x1 pixels and "
+                    "one channel",
+                    path.string()));
+  }
+  format->encode_disparity(path, disparity, bytes);
+}
+
+void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity) {
+  std::vector<std::uint8_t> bytes;
+  encode_disparity(path, disparity, bytes);
+  write_binary_file(path, bytes);
+}
+
+void require_holds_search(const std::filesystem::path& path, int min_px, int max_px) {
+  const MapFormat* const format = find_map_format(path, MapContent::kDisparity);
+  if (format != nullptr && !format->holds_any_value &&
+      (min_px < 0 || max_px * kIntegerDisparityScale > kMaxIntegerDisparity)) {
+    throw UsageError(
+        fmt::format("{} is a 16-bit PNG, which holds disparities from 0 to 255.99, but the search "
+                    "range is {}:{}; expected {}, which have no limits, or `disparities` MIN:MAX "
+                    "within 0:255",
+                    path.string(), min_px, max_px, listed_map_formats(MapContent::kConfidence)));
+  }
+}
+
+}  // namespace vantage

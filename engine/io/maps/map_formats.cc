@@ -1,0 +1,212 @@
+#include "engine/io/maps/map_formats.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/images/image_file.h"
+#include "engine/io/images/pfm.h"
+#include "engine/io/maps/npy.h"
+#include "kernels/integer_disparity/integer_disparity.h"
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+using Disparity = ImageView<const float>;
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// ±inf become NaN.
+Image<float> with_nan(Disparity disparity) {
+  Image<float> result(disparity.width(), disparity.height());
+  for (int y = 0; y < disparity.height(); ++y) {
+    std::transform(disparity.row(y), disparity.row(y) + disparity.width(), result.row(y),
+                   [](float d) { return std::isfinite(d) ? d : kNan; });
+  }
+  return result;
+}
+
+void disparity_as_pfm(const fs::path& /*path*/, Disparity disparity, Bytes& bytes) {
+  encode_pfm(disparity, bytes, std::numeric_limits<float>::infinity());
+}
+
+void disparity_as_npy(const fs::path& /*path*/, Disparity disparity, Bytes& bytes) {
+  bytes = encode_npy(with_nan(disparity).view());
+}
+
+void disparity_as_floats(const fs::path& path, Disparity disparity, Bytes& bytes) {
+  encode_image(path, Photograph{with_nan(disparity)}, bytes);
+}
+
+void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes) {
+  static_assert(kernels::kIntegerUnitsPerPx == kIntegerDisparityScale);
+  Image<std::uint16_t> image(disparity.width(), disparity.height());
+  for (int y = 0; y < disparity.height(); ++y) {
+    const int x = kernels::integer_disparity_row(disparity.row(y), disparity.width(), image.row(y));
+    if (x < disparity.width()) {
+      throw Error(fmt::format(
+          "cannot write {}: disparity {} at pixel ({}, {}) does not fit a 16-bit PNG, expected "
+          "0..255.99, or a file in {}, which have no limits",
+          path.string(), disparity.at(x, y), x, y, listed_map_formats(MapContent::kConfidence)));
+    }
+  }
+  encode_image(path, Photograph{std::move(image)}, bytes);
+}
+
+void depth_as_png(const fs::path& path, ImageView<const float> depth_m, Bytes& bytes) {
+  Image<std::uint16_t> image(depth_m.width(), depth_m.height());
+  for (int y = 0; y < depth_m.height(); ++y) {
+    for (int x = 0; x < depth_m.width(); ++x) {
+      const double depth = static_cast<double>(depth_m.at(x, y));
+      if (!std::isfinite(depth)) {
+        image.at(x, y) = 0;
+        continue;
+      }
+      const double millimetres = std::max(std::round(depth * kIntegerDepthScale), 1.0);
+      if (millimetres > 65535) {
+        throw Error(fmt::format(
+            "cannot write {}: depth {} m at pixel ({}, {}) does not fit a 16-bit PNG of "
+            "millimetres, expected at most {}, or a file in {}",
+            path.string(), depth, x, y, kMaxIntegerDepth_m,
+            listed_map_formats(MapContent::kConfidence)));
+      }
+      image.at(x, y) = static_cast<std::uint16_t>(millimetres);
+    }
+  }
+  encode_image(path, Photograph{std::move(image)}, bytes);
+}
+
+/// (u, v) interleaved; both `unknown` where one of them is not finite.
+Image<float> interleaved(const DisplacementView& displacements, Side side, float unknown) {
+  const float sign = side == Side::kLeft ? -1.0F : 1.0F;
+  const int width = displacements.x_px.width();
+  Image<float> result(width, displacements.x_px.height(), 2);
+  for (int y = 0; y < result.height(); ++y) {
+    const float* along_x = displacements.x_px.row(y);
+    const float* along_y = displacements.y_px.row(y);
+    float* target = result.row(y);
+    for (int x = 0; x < width; ++x) {
+      const bool known = std::isfinite(along_x[x]) && std::isfinite(along_y[x]);
+      // Adding zero turns −0 into 0 for disparity 0.
+      target[2 * x] = known ? sign * along_x[x] + 0.0F : unknown;
+      target[2 * x + 1] = known ? sign * along_y[x] + 0.0F : unknown;
+    }
+  }
+  return result;
+}
+
+void displacements_as_flo(const fs::path& /*path*/, const DisplacementView& displacements,
+                          Side side, Bytes& bytes) {
+  constexpr float kFloUnknown = 1e10F;
+  constexpr std::size_t kHeaderBytes = 12;
+  const Image<float> values = interleaved(displacements, side, kFloUnknown);
+  const std::size_t row_bytes = 2 * sizeof(float) * static_cast<std::size_t>(values.width());
+  bytes.resize(kHeaderBytes + row_bytes * static_cast<std::size_t>(values.height()));
+  const std::int32_t size[2] = {values.width(), values.height()};
+  std::memcpy(bytes.data(), "PIEH", 4);
+  std::memcpy(bytes.data() + 4, size, sizeof size);
+  for (int y = 0; y < values.height(); ++y) {
+    std::memcpy(bytes.data() + kHeaderBytes + row_bytes * static_cast<std::size_t>(y),
+                values.row(y), row_bytes);
+  }
+}
+
+void displacements_as_npy(const fs::path& /*path*/, const DisplacementView& displacements,
+                          Side side, Bytes& bytes) {
+  bytes = encode_npy(interleaved(displacements, side, kNan).view());
+}
+
+/// Three channels, because image formats do not have two.
+void displacements_as_floats(const fs::path& path, const DisplacementView& displacements, Side side,
+                             Bytes& bytes) {
+  const Image<float> values = interleaved(displacements, side, kNan);
+  Image<float> result(values.width(), values.height(), 3);
+  for (int y = 0; y < result.height(); ++y) {
+    for (int x = 0; x < result.width(); ++x) {
+      const bool known = !std::isnan(values.at(x, y, 0));
+      result.at(x, y, 0) = known ? values.at(x, y, 0) : 0;
+      result.at(x, y, 1) = known ? values.at(x, y, 1) : 0;
+      result.at(x, y, 2) = known ? 1.0F : 0.0F;
+    }
+  }
+  encode_image(path, Photograph{std::move(result)}, bytes);
+}
+
+constexpr MapFormat kFormats[] = {
+    {.extension = ".flo", .encode_displacements = displacements_as_flo},
+    {.extension = ".pfm", .encode_disparity = disparity_as_pfm, .encode_depth = disparity_as_pfm},
+    {.extension = ".png",
+     .holds_any_value = false,
+     .encode_disparity = disparity_as_png,
+     .encode_depth = depth_as_png},
+    {.extension = ".tiff",
+     .encode_disparity = disparity_as_floats,
+     .encode_depth = disparity_as_floats,
+     .encode_displacements = displacements_as_floats},
+    {.extension = ".tif",
+     .is_listed = false,
+     .encode_disparity = disparity_as_floats,
+     .encode_depth = disparity_as_floats,
+     .encode_displacements = displacements_as_floats},
+    {.extension = ".exr",
+     .encode_disparity = disparity_as_floats,
+     .encode_depth = disparity_as_floats,
+     .encode_displacements = displacements_as_floats},
+    {.extension = ".npy",
+     .encode_disparity = disparity_as_npy,
+     .encode_depth = disparity_as_npy,
+     .encode_displacements = displacements_as_npy},
+};
+
+}  // namespace
+
+bool MapFormat::can_hold(MapContent content) const {
+  switch (content) {
+    case MapContent::kDisplacements:
+      return encode_displacements != nullptr;
+    case MapContent::kDepth:
+      return encode_depth != nullptr;
+    case MapContent::kConfidence:
+      return encode_disparity != nullptr && holds_any_value;
+    case MapContent::kDisparity:
+      break;
+  }
+  return encode_disparity != nullptr;
+}
+
+std::span<const MapFormat> map_formats() { return kFormats; }
+
+const MapFormat* find_map_format(const fs::path& path, MapContent content) {
+  const std::string extension = lower_case_extension(path);
+  const auto* const found = std::ranges::find_if(kFormats, [&](const MapFormat& format) {
+    return format.extension == extension && format.can_hold(content);
+  });
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
+std::string listed_map_formats(MapContent content, std::string_view prefix) {
+  std::vector<std::string> names;
+  for (const MapFormat& format : kFormats) {
+    if (format.is_listed && format.can_hold(content)) {
+      names.push_back(fmt::format("{}{}", prefix, format.extension.substr(1)));
+    }
+  }
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
+}
+
+}  // namespace vantage

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/image/image.h"
+#include "engine/io/files/file_bytes.h"
+
+namespace vantage {
+
+/// True when `file` starts like a NumPy array file.
+bool is_npy(const FileBytes& file);
+
+/// Decodes a NumPy array file, format versions 1 to 3, of shape (height, width), type <f4 or <f8
+/// (rounded to float) in C order. Throws Error that names any other type, order or shape.
+Image<float> decode_npy(const FileBytes& file);
+
+/// Encodes as <f4 in C order, format version 1.0; of shape (height, width), or (height, width,
+/// channels) for several channels.
+std::vector<std::uint8_t> encode_npy(ImageView<const float> image);
+
+/// What precedes the <f4 values of a file of this shape, format version 1.0.
+std::vector<std::uint8_t> npy_float_header(std::span<const int> shape);
+
+/// Encodes numbers as <f8 in C order; the product of `shape` is their count.
+std::vector<std::uint8_t> encode_npy(std::span<const double> values, std::span<const int> shape);
+
+}  // namespace vantage

@@ -1,0 +1,56 @@
+#include "engine/io/video/frame_source.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/io/images/photograph_io.h"
+#include "engine/io/video/image_sequence.h"
+#include "engine/io/video/video_frames.h"
+
+namespace vantage {
+
+void FetchedFrame::decode() {
+  if (!file.empty()) {
+    photograph = read_photograph(file, std::move(photograph));
+  } else if (!picture.is_empty()) {
+    picture.convert(photograph);
+  }
+}
+
+bool FrameSource::next(Photograph& frame) {
+  FetchedFrame fetched;
+  std::swap(fetched.photograph, frame);
+  if (!fetch(fetched)) {
+    return false;
+  }
+  fetched.decode();
+  frame = std::move(fetched.photograph);
+  return true;
+}
+
+std::unique_ptr<FrameSource> open_frame_source(const std::string& spec) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::is_directory(spec, ignored)) {
+    return open_image_folder(spec);
+  }
+  if (fs::exists(spec, ignored)) {
+    if (has_image_extension(spec)) {
+      const fs::path path = spec;
+      return std::make_unique<ListedImages>(spec, path.parent_path(),
+                                            std::vector<fs::path>{path.filename()});
+    }
+    return std::make_unique<VideoFrames>(spec);
+  }
+  if (spec.find('%') != std::string::npos) {
+    return open_image_pattern(spec);
+  }
+  if (spec.find_first_of("*?[") != std::string::npos) {
+    return open_image_glob(spec);
+  }
+  throw Error(fmt::format("{}: no such file or folder, expected images or a video", spec));
+}
+
+}  // namespace vantage

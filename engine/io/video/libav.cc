@@ -1,0 +1,174 @@
+#include "engine/io/video/libav.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <new>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/io/files/image_size_limit.h"
+#include "engine/io/video/libav_functions.h"
+#include "engine/io/video/video_structure.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/audio_fifo.h>
+#include <libswresample/swresample.h>
+#include <libswscale/swscale.h>
+}
+
+namespace vantage {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Demultiplexers of containers and of raw streams with frames of one video.
+constexpr const char* kContainers =
+    "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,av1,obu,ivf,"
+    "vc1,mjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
+
+void check_is_video_file(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (!fs::exists(status)) {
+    throw Error(fmt::format("cannot read {}: no such file", path.string()));
+  }
+  if (!fs::is_regular_file(status)) {
+    throw Error(fmt::format("cannot read {}: expected a video file", path.string()));
+  }
+  std::error_code error;
+  if (fs::file_size(path, error) == 0 || error) {
+    throw Error(fmt::format("cannot read {}: the file is empty", path.string()));
+  }
+}
+
+/// Options for the decoders that find_streams() may start: none may allocate the size in a damaged
+/// header.
+class ProbeOptions {
+ public:
+  explicit ProbeOptions(unsigned streams) : options_(streams, nullptr) {
+    for (AVDictionary*& option : options_) {
+      av_dict_set_int(&option, "max_pixels", max_image_pixels(), 0);
+      av_dict_set_int(&option, "threads", 1, 0);
+    }
+  }
+  ProbeOptions(const ProbeOptions&) = delete;
+  ProbeOptions& operator=(const ProbeOptions&) = delete;
+  ~ProbeOptions() {
+    for (AVDictionary*& option : options_) {
+      av_dict_free(&option);
+    }
+  }
+  AVDictionary** data() { return options_.empty() ? nullptr : options_.data(); }
+
+ private:
+  std::vector<AVDictionary*> options_;
+};
+
+AVStream* find_stream(AVFormatContext& input, AVMediaType type) {
+  const int index = libav().av_find_best_stream(&input, type, -1, -1, nullptr, 0);
+  return index < 0 ? nullptr : input.streams[index];
+}
+
+}  // namespace
+
+void LibavFree::operator()(AVAudioFifo* samples) const noexcept { av_audio_fifo_free(samples); }
+void LibavFree::operator()(AVCodecContext* codec) const noexcept {
+  libav().avcodec_free_context(&codec);
+}
+void LibavFree::operator()(AVFormatContext* input) const noexcept {
+  libav().avformat_close_input(&input);
+}
+void LibavFree::operator()(AVFrame* frame) const noexcept { av_frame_free(&frame); }
+void LibavFree::operator()(AVPacket* packet) const noexcept { libav().av_packet_free(&packet); }
+void LibavFree::operator()(SwrContext* resampler) const noexcept { swr_free(&resampler); }
+void LibavFree::operator()(SwsContext* scaler) const noexcept { sws_freeContext(scaler); }
+
+LibavFrame make_libav_frame() {
+  LibavFrame frame(av_frame_alloc());
+  if (frame == nullptr) {
+    throw std::bad_alloc();
+  }
+  return frame;
+}
+
+LibavPacket make_libav_packet() {
+  LibavPacket packet(libav().av_packet_alloc());
+  if (packet == nullptr) {
+    throw std::bad_alloc();
+  }
+  return packet;
+}
+
+std::string libav_message(int error) {
+  if (error == AVERROR(EPERM)) {
+    return "invalid data found";  // several decoders return −1
+  }
+  std::array<char, AV_ERROR_MAX_STRING_SIZE> buffer{};
+  av_strerror(error, buffer.data(), buffer.size());
+  std::string message(buffer.data());
+  if (!message.empty()) {
+    message[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(message[0])));
+  }
+  return message;
+}
+
+void silence_libav() {
+  static const bool silent = [] {
+    av_log_set_level(AV_LOG_QUIET);
+    return true;
+  }();
+  (void)silent;
+}
+
+LibavInput open_media_file(const fs::path& path) {
+  silence_libav();
+  check_is_video_file(path);
+  check_video_tables(path);
+  if (find_video_extent(path) == VideoExtent::kWithoutIndex) {
+    throw Error(
+        fmt::format("{}: is an MP4 without index (moov): truncated after {} bytes, or its "
+                    "recording was not finished",
+                    path.string(), fs::file_size(path)));
+  }
+  AVFormatContext* opened = libav().avformat_alloc_context();
+  if (opened == nullptr) {
+    throw std::bad_alloc();
+  }
+  opened->format_whitelist = av_strdup(kContainers);
+  opened->protocol_whitelist = av_strdup("file");
+  // "file:" keeps names with a colon from being parsed as URLs. On failure `opened` is freed.
+  const std::string address = "file:" + path.string();
+  int result = libav().avformat_open_input(&opened, address.c_str(), nullptr, nullptr);
+  LibavInput input(result < 0 ? nullptr : opened);
+  if (result >= 0) {
+    result = libav().avformat_find_stream_info(input.get(), ProbeOptions(input->nb_streams).data());
+  }
+  if (result < 0) {
+    throw Error(fmt::format("{}: is not a video, or a truncated one ({})", path.string(),
+                            libav_message(result)));
+  }
+  return input;
+}
+
+AVStream* find_video_stream(AVFormatContext& input) {
+  AVStream* stream = find_stream(input, AVMEDIA_TYPE_VIDEO);
+  const bool cover = stream != nullptr && (stream->disposition & AV_DISPOSITION_ATTACHED_PIC) != 0;
+  return cover ? nullptr : stream;
+}
+
+AVStream* find_sound_stream(AVFormatContext& input) {
+  return find_stream(input, AVMEDIA_TYPE_AUDIO);
+}
+
+void read_only(AVFormatContext& input, const AVStream& stream) {
+  for (unsigned i = 0; i < input.nb_streams; ++i) {
+    input.streams[i]->discard = input.streams[i] == &stream ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
+  }
+}
+
+}  // namespace vantage

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "engine/image/photograph.h"
+#include "engine/io/video/frame_to_photograph.h"
+#include "engine/io/video/libav.h"
+#include "engine/object_pool.h"
+
+namespace vantage {
+
+/// Converters for pictures of one video: one per concurrent conversion.
+using PictureConverters = ObjectPool<FrameToPhotograph>;
+
+/// A decoded frame of a video, usually luma and chroma. It shares the decoder's memory and may
+/// outlive its reader.
+class VideoPicture {
+ public:
+  /// Holds nothing.
+  VideoPicture() = default;
+  /// Refers to the pixels of `frame`. `name` is for messages: "a.mp4: frame 12".
+  VideoPicture(const AVFrame& frame, std::shared_ptr<PictureConverters> converters,
+               std::string name);
+
+  [[nodiscard]] bool is_empty() const { return frame_ == nullptr; }
+  /// Another reference to the same pixels.
+  [[nodiscard]] VideoPicture share() const;
+  /// Memory of its pixels.
+  [[nodiscard]] std::size_t bytes() const;
+
+  /// Converts it to a photograph, whose memory is reused, and releases the decoder's memory. Thread
+  /// rule: concurrently for different pictures. Throws Error, with the name, when its pixel format
+  /// cannot be converted.
+  void convert(Photograph& photograph);
+
+ private:
+  LibavFrame frame_;
+  std::shared_ptr<PictureConverters> converters_;
+  std::string name_;
+};
+
+}  // namespace vantage
