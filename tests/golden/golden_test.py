@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""Results of every method, preset and command that makes maps or views, by checksum: a change of
+results is a decision, made with --update and explained in its commit.
+
+usage: golden_test.py VANTAGE [--update]
+
+golden.txt beside this file holds one command in each paragraph and, below it, the files that it
+writes, each with the first 16 digits of its SHA-256. Commands run in order in one folder, on one to
+three threads in turn, and every other one on SSE4: neither changes a result."""
+
+import argparse
+import hashlib
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+GOLDEN = Path(__file__).with_name("golden.txt")
+# Words that several commands share. Sizes are odd, and no multiple of a vector.
+WORDS = {
+    "PAIR": "scene/left.png scene/right.png",
+    "FRAMES": "--left film/left --right film/right",
+    "RANGE": "--disparities 1:17",
+}
+
+
+def paragraphs():
+    """The commands of golden.txt, each with {file: checksum}."""
+    for text in GOLDEN.read_text(encoding="utf-8").split("\n\n"):
+        lines = [line for line in text.splitlines() if line and not line.startswith("#")]
+        if lines:
+            yield lines[0], dict(reversed(line.split()) for line in lines[1:])
+
+
+def run(program, command, index):
+    words = []
+    for word in shlex.split(command):
+        words += WORDS[word].split() if word in WORDS else [word]
+    if words[0] != "generate":
+        words += ["--threads", str(1 + index % 3), "--isa", ["best", "SSE4"][index % 2], "--quiet"]
+    done = subprocess.run([program, *words], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        return f"exit code {done.returncode}: {done.stderr.strip()}"
+    return None
+
+
+def checksum(file):
+    path = Path(file)
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16] if path.is_file() else "missing"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program")
+    parser.add_argument("--update", action="store_true", help="write the checksums of this program")
+    arguments = parser.parse_args()
+    program = os.path.abspath(arguments.program)
+    header = "\n".join(line for line in GOLDEN.read_text(encoding="utf-8").splitlines()
+                       if line.startswith("#"))
+    updated, failures, files = [header], 0, 0
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        for index, (command, expected) in enumerate(paragraphs()):
+            error = run(program, command, index)
+            seen = {file: checksum(file) for file in expected}
+            updated.append("\n".join([command, *(f"  {seen[file]} {file}" for file in seen)]))
+            wrong = [file for file in expected if seen[file] != expected[file]]
+            files += len(expected)
+            if error or (wrong and not arguments.update):
+                failures += 1
+                print(f"vantage {command}: {error or 'differs: ' + ', '.join(wrong)}")
+        os.chdir("/")
+    if arguments.update and failures == 0:
+        GOLDEN.write_text("\n\n".join(updated) + "\n", encoding="utf-8")
+    print(f"{len(updated) - 1} commands, {files} files, {failures} failures")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
