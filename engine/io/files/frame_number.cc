@@ -6,13 +6,9 @@
 #include <charconv>
 
 #include "engine/error.h"
+#include "engine/io/files/decimal_digit.h"
 
 namespace vantage {
-namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
-}  // namespace
 
 std::optional<long long> frame_number(const std::filesystem::path& file) {
   constexpr std::ptrdiff_t kMaxDigits = 18;

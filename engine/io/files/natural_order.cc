@@ -4,10 +4,10 @@
 #include <string>
 #include <string_view>
 
+#include "engine/io/files/decimal_digit.h"
+
 namespace vantage {
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Removes the digits at the start of `text` and returns them without leading zeros.
 std::string_view take_number(std::string_view& text) {

@@ -10,6 +10,7 @@
 #include <system_error>
 #include <vector>
 
+#include "engine/io/files/decimal_digit.h"
 #include "engine/io/files/file_identity.h"
 
 namespace vantage {
@@ -62,8 +63,6 @@ std::size_t skip(std::string_view& text, const Accepts& accepts) {
   text.remove_prefix(count);
   return count;
 }
-
-bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
 
 bool skip_dash(std::string_view& text) {
   const bool is_dash = text.starts_with('-');
