@@ -19,6 +19,8 @@ import urllib.parse
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGES = {"README.md": "about.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
          "perf/README.md": "benchmarks.md"}
+# Pages that are made for the site, as documents link to them → on the site.
+MADE_PAGES = {"docs/gallery.md": "gallery.md", "docs/commands/index.md": "commands/index.md"}
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 
 
@@ -27,8 +29,6 @@ def site_names():
     names = dict(PAGES)
     for page in ROOT.glob("docs/*.md"):
         names[f"docs/{page.name}"] = page.name.lower()
-    for page in ROOT.glob("perf/log/*.md"):
-        names[f"perf/log/{page.name}"] = f"notebooks/{page.name}"
     for picture in ROOT.glob("docs/pictures/*"):
         names[f"docs/pictures/{picture.name}"] = f"pictures/{picture.name}"
     return names
@@ -36,15 +36,17 @@ def site_names():
 
 def adapted(text, source, names):
     """`text` of the file `source` with its relative links as they are on the site."""
+    targets = {**names, **MADE_PAGES}
+
     def adapt(match):
         is_picture, label, target = match.groups()
         if urllib.parse.urlparse(target).scheme or target.startswith("#"):
             return match.group(0)
         path, _, anchor = target.partition("#")
         linked = os.path.normpath(os.path.join(os.path.dirname(source), path))
-        if linked not in names:
+        if linked not in targets:
             return label
-        relative = os.path.relpath(names[linked], os.path.dirname(names[source]) or ".")
+        relative = os.path.relpath(targets[linked], os.path.dirname(names[source]) or ".")
         return f"{is_picture}[{label}]({relative}{'#' + anchor if anchor else ''})"
     return LINK.sub(adapt, text)
 

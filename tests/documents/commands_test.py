@@ -1,26 +1,29 @@
 #!/usr/bin/env python3
-"""Runs every shell block of the documents, so that what they tell users to type works.
+"""Runs the shell and Python blocks of the documents, so that what they tell users to type works.
 
-usage: commands_test.py VANTAGE [--only DOCUMENT] [--verbose]
+usage: commands_test.py VANTAGE [PYTHON_FOLDER] [--only DOCUMENT] [--verbose]
 
-Blocks of a document run in order in one folder, which starts with the inputs that the documents
-name (small generated scenes). Recipes are typed one after the other; of other documents a reader picks
-a section, so `results` of earlier sections is removed. A block after the comment
-`<!-- not run: REASON -->` is left out.
+A document is read as by a newcomer: its blocks run in order in one folder, which is empty at first,
+so it must name whatever it needs. Python blocks share their names; PYTHON_FOLDER holds the module
+(without it, or where no interpreter can load it, they are left out). Two comments before a block
+say otherwise:
+
+    <!-- not run: REASON -->         the block is left out
+    <!-- data of yours: NAME -->     a reader of the block has NAME; a small one is made (STAND_INS)
+
 Prints each block that fails, with its place, and exits 1 when one does.
 """
 import argparse
 import concurrent.futures
+import json
 import os
 import pathlib
 import re
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
 import time
-import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 sys.path += [str(ROOT / "tests/depths"), str(ROOT / "tests/asp")]
@@ -30,61 +33,46 @@ from plain_tiff import write_tiff  # noqa: E402
 DOCUMENTS = ["README.md", "CONTRIBUTING.md", "perf/README.md",
              *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w*)\s*$")
-NOT_RUN = re.compile(r"<!-- not run: .+ -->")
+COMMENT = re.compile(r"<!-- (not run|data of yours): (.+) -->")
+
+# Runs blocks of Python that share their names; one JSON text a line in, the last line of the error
+# or null out.
+PYTHON_SESSION = """
+import json, os, sys, traceback
+answers = os.fdopen(os.dup(1), "w")
+os.dup2(2, 1)
+names = {"__name__": "__main__"}
+for line in sys.stdin:
+    error = None
+    try:
+        exec(compile(json.loads(line), "block", "exec"), names)
+    except BaseException:
+        error = traceback.format_exc().strip().splitlines()[-1]
+    print(json.dumps(error), file=answers, flush=True)
+"""
 
 
-def shell_blocks(text):
-    """Line number, text and number of the section of each shell block that is to be run."""
-    blocks, block, start, kept, before, section = [], None, 0, True, "", 0
+def blocks(text):
+    """Line number, language, text and (kind, value) of the comment before each block that is run."""
+    block, start, language, before = None, 0, "", ""
     for number, line in enumerate(text.splitlines(), 1):
         fence = FENCE.match(line)
         if block is not None and line.startswith("```"):
-            if kept:
-                blocks.append((start, "\n".join(block), section))
-            block = None
+            comment = COMMENT.search(before)
+            if language in ("sh", "python") and not (comment and comment.group(1) == "not run"):
+                yield start, language, "\n".join(block), comment and comment.group(2)
+            block, before = None, ""
         elif block is not None:
             block.append(line)
-        elif fence and fence.group(1) == "sh":
-            block, start, kept = [], number + 1, not NOT_RUN.search(before)
         elif fence:
-            block, kept = [], False
+            block, start, language = [], number + 1, fence.group(1)
         elif line.strip():
-            section += line.startswith("#")
             before = line
-    return blocks
-
-
-TYPED_IN_ORDER = {"docs/RECIPES.md"}
-
-# Name in the documents → generated file.
-COPIES = {
-    "video.mp4": "film/stereo.mp4", "film.mp4": "film/stereo.mp4", "film.mkv": "film/stereo.mp4",
-    "truth.pfm": "left-disparity.pfm",
-    "photograph.png": "row/view-1.png",
-    "first.png": "row/view-0.png", "second.png": "row/view-1.png", "third.png": "row/view-2.png",
-    "upper.png": "row/view-0.png", "lower.png": "row/view-0,1.png", "a.png": "left.png", "b.png": "right.png",
-    "training/image_2/000000_10.png": "left.png", "training/image_3/000000_10.png": "right.png",
-    "photos/0.png": "row/view-0.png", "photos/1.png": "row/view-1.png",
-    "photos/2.png": "row/view-2.png",
-}
-
-
-def rig_file(calib):
-    """OpenCV's YAML of a rig, from Middlebury's calib.txt of a rectified one."""
-    values = dict(line.split("=") for line in calib.splitlines())
-    matrix = ", ".join(str(float(number)) for number in re.findall(r"[-.\d]+", values["cam0"]))
-
-    def entry(name, rows, columns, data):
-        return (f"{name}: !!opencv-matrix\n   rows: {rows}\n   cols: {columns}\n   dt: d\n"
-                f"   data: [ {data} ]\n")
-    return ("%YAML:1.0\n---\n" + entry("M1", 3, 3, matrix) + entry("M2", 3, 3, matrix) +
-            entry("D1", 1, 5, "0., 0., 0., 0., 0.") + entry("D2", 1, 5, "0., 0., 0., 0., 0.") +
-            entry("R", 3, 3, "1., 0., 0., 0., 1., 0., 0., 0., 1.") +
-            entry("T", 3, 1, f"{-float(values['baseline'])}, 0., 0."))
 
 
 def kitti_file(calib):
-    """KITTI's calib_cam_to_cam.txt of the same rig; the grey cameras are a little farther apart."""
+    """KITTI's calib_cam_to_cam.txt of Middlebury's calib.txt of a rectified rig; the grey cameras are a
+    little farther apart."""
     values = dict(line.split("=") for line in calib.splitlines())
     focal, _, cx, _, _, cy = [float(n) for n in re.findall(r"[-.\d]+", values["cam0"])[:6]]
     text = "calib_time: 09-Jan-2012 13:57:47\n"
@@ -94,92 +82,121 @@ def kitti_file(calib):
     return text
 
 
-def write_grey_png(path, rows):
-    """An 8-bit PNG of one channel."""
-    def chunk(name, data):
-        return (struct.pack(">I", len(data)) + name + data +
-                struct.pack(">I", zlib.crc32(name + data)))
-    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 0, 0, 0, 0)
-    pixels = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", pixels) +
-                     chunk(b"IEND", b""))
+def make_kitti(pair, vantage, target):
+    for folder, name in (("image_2", "left.png"), ("image_3", "right.png")):
+        (target / folder).mkdir(parents=True)
+        shutil.copy(pair / name, target / folder / "000000_10.png")
+    (target / "disp_occ_0").mkdir()
+    vantage(f"match {pair}/left.png {pair}/right.png -o {target}/disp_occ_0/000000_10.png")
+    (target / "calib_cam_to_cam").mkdir()
+    (target / "calib_cam_to_cam/000000.txt").write_text(
+        kitti_file((pair / "calib.txt").read_text()))
 
 
-class Inputs:
-    """A folder with the inputs that the documents name, made once and copied for each document."""
+def make_tiles(pair, vantage, target):
+    target.mkdir()
+    for side in ("left", "right"):
+        write_tiff(target / f"{side}.tif", [[float(pixel[0]) for pixel in row]
+                                            for row in read_png(pair / f"{side}.png")])
 
-    def __init__(self, program, folder):
+
+# Data that only a reader has: folder → what makes a small one.
+STAND_INS = {"training": make_kitti, "tiles": make_tiles}
+
+
+class Reader:
+    """Who types what a document says, in an empty folder."""
+
+    def __init__(self, program, python, folder):
         self.program = program
+        self.python = python  # interpreter and its environment, or None
         self.folder = folder
-        self.vantage("generate scene --frames 6 --width 192 --height 144 --near 14 -o .")
-        self.vantage("generate scene --width 192 --height 144 --near 14 -o .")
-        self.vantage("run --left left --right right --disparities 0:15 --save stereo "
-                     "--stereo-packing sbsl --video stereo --preset fast -o film")
-        self.vantage("generate scene --width 192 --height 144 --near 14 --view 0 --view 1 --view 2 --view 0,1 "
-                     "-o row")
-        for name, source in COPIES.items():
-            (folder / name).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(folder / source, folder / name)
-        (folder / "training/disp_occ_0").mkdir()
-        self.vantage("match left.png right.png -o training/disp_occ_0/000000_10.png")
-        for used in ("film", "row"):
-            shutil.rmtree(folder / used)
-        for side in ("left", "right"):
-            rows = [[float(pixel[0]) for pixel in row] for row in read_png(folder / f"{side}.png")]
-            write_tiff(folder / f"tile-{side}.tif", rows)
-        (folder / "poses.txt").write_text(  # KITTI's: each frame half a metre ahead
-            "".join(f"1 0 0 0 0 1 0 0 0 0 1 {0.5 * frame}\n" for frame in range(6)))
-        calib = (folder / "calib.txt").read_text()
-        (folder / "rig.yml").write_text(rig_file(calib))
-        (folder / "training/calib_cam_to_cam").mkdir()
-        (folder / "training/calib_cam_to_cam/000000.txt").write_text(kitti_file(calib))
-        occluded = read_png(folder / "left-occluded.png")
-        write_grey_png(folder / "visible.png", [[255 - pixel[0] for pixel in row] for row in occluded])
+        self.session = None
+        self.environment = dict(os.environ, TERM="dumb",
+                                PATH=f"{pathlib.Path(program).parent}:{os.environ['PATH']}")
+        folder.mkdir()
 
-    def vantage(self, words):
-        subprocess.run([self.program, *words.split(), "--quiet"], cwd=self.folder, check=True)
+    def has(self, name):
+        """Makes the data `name`."""
+        def vantage(words):
+            subprocess.run([self.program, *words.split(), "--quiet"], check=True)
+        with tempfile.TemporaryDirectory() as pair:
+            vantage(f"generate scene --width 192 --height 144 --near 14 -o {pair}")
+            STAND_INS[name](pathlib.Path(pair), vantage, self.folder / name)
 
-
-def run_document(program, document, inputs, work, verbose):
-    """The blocks that failed, as texts."""
-    folder = work / document.replace("/", "-")
-    subprocess.run(["cp", "-r", inputs, folder], check=True)
-    environment = dict(os.environ, PATH=f"{pathlib.Path(program).parent}:{os.environ['PATH']}",
-                       TERM="dumb")
-    failures = []
-    latest = 0
-    for line, block, section in shell_blocks((ROOT / document).read_text()):
-        if section != latest and document not in TYPED_IN_ORDER:
-            shutil.rmtree(folder / "results", ignore_errors=True)
-        latest = section
-        start = time.monotonic()
-        result = subprocess.run(["bash", "-euo", "pipefail", "-c", block], cwd=folder, text=True,
-                                env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                                stdin=subprocess.DEVNULL)
-        if verbose:
-            print(f"{document}:{line}: exit {result.returncode}, {time.monotonic() - start:.1f} s")
+    def run_shell(self, block):
+        """What went wrong, or None."""
+        result = subprocess.run(["bash", "-euo", "pipefail", "-c", block], cwd=self.folder, text=True,
+                                env=self.environment, stdout=subprocess.PIPE,
+                                stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
         if result.returncode != 0:
             last_lines = "\n    ".join(result.stdout.strip().splitlines()[-3:])
-            failures.append(f"{document}:{line}: exit {result.returncode}\n    {last_lines}")
+            return f"exit {result.returncode}\n    {last_lines}"
+        return None
+
+    def run_python(self, block):
+        if self.python is None:
+            return None
+        if self.session is None:
+            interpreter, environment = self.python
+            self.session = subprocess.Popen(
+                [interpreter, "-B", "-c", PYTHON_SESSION], cwd=self.folder, text=True,
+                env={**self.environment, **environment}, stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        self.session.stdin.write(json.dumps(block) + "\n")
+        self.session.stdin.flush()
+        return json.loads(self.session.stdout.readline() or '"Python ended"')
+
+    def leave(self):
+        if self.session:
+            self.session.stdin.close()
+            self.session.wait()
+
+
+def run_document(program, python, document, work, verbose):
+    """The blocks that failed, as texts."""
+    reader = Reader(program, python, work / document.replace("/", "-"))
+    failures = []
+    for line, language, block, data in blocks((ROOT / document).read_text()):
+        if data:
+            reader.has(data)
+        start = time.monotonic()
+        problem = reader.run_shell(block) if language == "sh" else reader.run_python(block)
+        if verbose:
+            print(f"{document}:{line}: {problem or 'ok'}, {time.monotonic() - start:.1f} s")
+        if problem:
+            failures.append(f"{document}:{line}: {problem}")
+    reader.leave()
     return failures
+
+
+def find_python(folder):
+    """An interpreter that loads the module in `folder`, and its environment."""
+    environment = {"PYTHONPATH": str(folder)}
+    for interpreter in (sys.executable, "/usr/bin/python3"):
+        if folder and subprocess.run([interpreter, "-B", "-c", "import vantage, cv2"],
+                                     env={**os.environ, **environment},
+                                     stderr=subprocess.DEVNULL).returncode == 0:
+            return interpreter, environment
+    print("no Python module: its blocks are left out")
+    return None
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
+    parser.add_argument("python", nargs="?", type=os.path.abspath)
     parser.add_argument("--only")
     parser.add_argument("--verbose", action="store_true")
     arguments = parser.parse_args()
     documents = [document for document in DOCUMENTS
                  if arguments.only in (None, document)]
+    program = os.path.abspath(arguments.program)
+    python = find_python(arguments.python)
     with tempfile.TemporaryDirectory() as work:
-        work = pathlib.Path(work)
-        (work / "inputs").mkdir()
-        program = os.path.abspath(arguments.program)
-        inputs = Inputs(program, work / "inputs").folder
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             failures = sum(pool.map(lambda document: run_document(
-                program, document, inputs, work, arguments.verbose), documents), [])
+                program, python, document, pathlib.Path(work), arguments.verbose), documents), [])
     for failure in failures:
         print(failure)
     print(f"commands of documents: {len(failures)} blocks failed")
