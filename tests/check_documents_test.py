@@ -58,6 +58,20 @@ class CheckDocumentsTest(PlantedTreeTest):
         self.expect_violation("perf/a.md", "# A\n[x](#b)", "perf/a.md:2: link to '#b'")
         self.expect_violation("docs/a.md", "![x](gone.png)", "docs/a.md:1: link to 'gone.png'")
 
+    def test_figures_that_differ(self):
+        table = ('[values]\nbad = "7.5"\nrate = "11.9"\n[quotes]\n"a.md" = ["| {bad} / … % |", '
+                 '"makes {rate:.0f} a second"]\nhelp = ["fast {bad} % bad"]\n')
+        page = "| 7.5 / 9 % |\n\nIt makes 12\na second.\n"
+        tree = {**CLEAN_TREE, "docs/figures.toml": table, "a.md": page,
+                "apps/a.cc": '"fast  7.5 "\n  "% bad"\n'}
+        self.assertEqual(self.check(tree).returncode, 0)
+        for name, text in [("a.md", page.replace("7.5", "7.6")), ("a.md", page.replace("12", "11")),
+                           ("a.md", page.replace("/ 9 %", "")), ("apps/a.cc", '"fast 7.4 % bad"')]:
+            with self.subTest(name=name, text=text):
+                result = self.check({**tree, name: text})
+                self.assertEqual(result.returncode, 1)
+                self.assertIn("does not say", result.stdout)
+
     def test_places_that_do_not_exist(self):
         table = "| step | engine |\n|---|---|\n| a `word` | `io/box`, `box_x`, `--option` |\n"
         tree = {**CLEAN_TREE, "engine/io/box.h": "", "kernels/box_x/box_x_simd.cc": ""}

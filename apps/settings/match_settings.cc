@@ -28,8 +28,8 @@ void add_method_settings(Settings& settings, MatchOptions& options) {
       "preset's, without a preset ssd");
   settings.choice(
       "preset", options.preset, preset_names(),
-      "Parameters for photographs, shown by --print-config:\nrealtime  0.4 times the time of "
-      "balanced, 8.4 % bad pixels\nfast      0.7 times the time of balanced, 8.3 % bad "
+      "Parameters for photographs, shown by --print-config:\nrealtime  0.35 times the time of "
+      "balanced, 8.2 % bad pixels\nfast      0.7 times the time of balanced, 8.3 % bad "
       "pixels\nbalanced  the default, 7.5 % bad pixels (mean of 18 "
       "scenes)\nquality   1.8 times the time of balanced, 7.5 % bad pixels\nauto: balanced; with "
       "--method, --aggregate, --disparities-y: none");
