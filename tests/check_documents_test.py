@@ -73,12 +73,14 @@ class CheckDocumentsTest(PlantedTreeTest):
                 self.assertIn("does not say", result.stdout)
 
     def test_places_that_do_not_exist(self):
-        table = "| step | engine |\n|---|---|\n| a `word` | `io/box`, `box_x`, `--option` |\n"
-        tree = {**CLEAN_TREE, "engine/io/box.h": "", "kernels/box_x/box_x_simd.cc": ""}
-        self.assertEqual(self.check({**tree, "docs/ARCHITECTURE.md": table}).returncode, 0)
-        result = self.check({**tree, "docs/ARCHITECTURE.md": table.replace("io/box", "image/box")})
-        self.assertEqual(result.returncode, 1)
-        self.assertIn("docs/ARCHITECTURE.md:3: there is no file or folder 'image/box'", result.stdout)
+        text = "`io/box`, `box.h`,\n`box_x`, `make_box`, `--option`, `NAME`, `kernels/`\n"
+        tree = {**CLEAN_TREE, "engine/io/box.h": "int make_box();", "kernels/box_x/box_x_simd.cc": ""}
+        for name in ["docs/ARCHITECTURE.md", "engine/io/README.md"]:
+            self.assertEqual(self.check({**tree, name: text}).returncode, 0)
+            for known, gone in [("io/box", "image/box"), ("make_box", "make_boxes"), ("box.h", "bag.h")]:
+                result = self.check({**tree, name: text.replace(known, gone)})
+                self.assertEqual(result.returncode, 1)
+                self.assertIn(f"there is no '{gone}'", result.stdout)
 
 
 if __name__ == "__main__":
