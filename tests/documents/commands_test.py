@@ -11,7 +11,9 @@ say otherwise:
     <!-- not run: REASON -->         the block is left out
     <!-- data of yours: NAME -->     a reader of the block has NAME; a small one is made (STAND_INS)
 
-Prints each block that fails, with its place, and exits 1 when one does.
+Options that the text or a block that is not run names must be options of the program: of the command
+where one is named, too (`scene build --grid`). Prints each block that fails and each such option,
+with its place, and exits 1 when there is one.
 """
 import argparse
 import concurrent.futures
@@ -26,9 +28,10 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-sys.path += [str(ROOT / "tests/depths"), str(ROOT / "tests/asp")]
+sys.path += [str(ROOT / "tests/depths"), str(ROOT / "tests/asp"), str(ROOT / "cmake/reference")]
 from plain_readers import read_png  # noqa: E402
 from plain_tiff import write_tiff  # noqa: E402
+from program import read_program  # noqa: E402
 
 DOCUMENTS = ["README.md", "CONTRIBUTING.md", "perf/README.md",
              *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md"))]
@@ -102,6 +105,40 @@ def make_tiles(pair, vantage, target):
 
 # Data that only a reader has: folder → what makes a small one.
 STAND_INS = {"training": make_kitti, "tiles": make_tiles}
+
+# Documents with options of other programs.
+OF_DEVELOPERS = {"CONTRIBUTING.md", "docs/ARCHITECTURE.md", "perf/README.md"}
+
+
+def options_of_commands(program):
+    """Name of a command → its options; "": those of all."""
+    options = {command["name"]: {"help", "help-all", *(option["name"] for option in command["options"])}
+               for command in read_program(program)["commands"]}
+    return {**options, "": set().union(*options.values())}
+
+
+def named_commands(text):
+    """Line number and text of what looks like a command or an option, outside of blocks that are run."""
+    run = {line + k for line, _, block, _ in blocks(text) for k in range(len(block.splitlines()))}
+    is_block = False
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.startswith("```"):
+            is_block = not is_block
+        elif number not in run:
+            for part in line.split("|") if is_block else re.findall(r"`([^`]*)`", line):
+                yield number, part
+
+
+def wrong_options(document, text, options):
+    for number, part in named_commands(text):
+        part = part.strip()
+        words = part.removeprefix("vantage ").split()
+        command = next((name for name in sorted(options, key=len, reverse=True)
+                        if words[:len(name.split())] == name.split()), "")
+        if command or part.startswith("--"):
+            for name in re.findall(r"(?<![\w-])--([a-z][a-z-]*)", part):
+                if name not in options[command]:
+                    yield f"{document}:{number}: {command or 'the program'} has no option --{name}"
 
 
 class Reader:
@@ -193,13 +230,16 @@ def main():
                  if arguments.only in (None, document)]
     program = os.path.abspath(arguments.program)
     python = find_python(arguments.python)
+    options = options_of_commands(program)
+    failures = [problem for document in documents if document not in OF_DEVELOPERS
+                for problem in wrong_options(document, (ROOT / document).read_text(), options)]
     with tempfile.TemporaryDirectory() as work:
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
-            failures = sum(pool.map(lambda document: run_document(
+            failures += sum(pool.map(lambda document: run_document(
                 program, python, document, pathlib.Path(work), arguments.verbose), documents), [])
     for failure in failures:
         print(failure)
-    print(f"commands of documents: {len(failures)} blocks failed")
+    print(f"commands of documents: {len(failures)} failures")
     sys.exit(1 if failures else 0)
 
 
