@@ -62,12 +62,11 @@ int main() {
   const bool is_deep =
       std::abs(depth_m.at(kWidth / 2, kHeight / 2) - 100 * 0.1 / kDisparityPx) < 0.2;
   const vantage::Photograph colours = photograph(left);
-  const vantage::PointCloud cloud = vantage::point_cloud(
-      {.disparity_px = map.disparity_px.view(),
-       .colours = &colours,
-       .unmatched = map.unmatched.view(),
-       .camera = camera},
-      {}, execution);
+  const vantage::PointCloud cloud = vantage::point_cloud({.disparity_px = map.disparity_px.view(),
+                                                          .colours = &colours,
+                                                          .unmatched = map.unmatched.view(),
+                                                          .camera = camera},
+                                                         {}, execution);
   std::printf("consumer: %zu points, %zu bytes of PLY\n", cloud.size(),
               vantage::encode_ply(cloud, vantage::kCameraFrame).size());
 
