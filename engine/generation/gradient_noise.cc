@@ -12,10 +12,10 @@ namespace {
 
 // Dot product of (x, y, z) with one of the twelve directions to the edges of a cube.
 double along_gradient(unsigned hash, double x, double y, double z) {
-  constexpr signed char kGradients[16][3] = {{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0},
-                                             {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
-                                             {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1},
-                                             {1, 1, 0}, {-1, 1, 0}, {0, -1, 1}, {0, -1, -1}};
+  static constexpr double kGradients[16][3] = {{1, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {-1, -1, 0},
+                                               {1, 0, 1}, {-1, 0, 1}, {1, 0, -1}, {-1, 0, -1},
+                                               {0, 1, 1}, {0, -1, 1}, {0, 1, -1}, {0, -1, -1},
+                                               {1, 1, 0}, {-1, 1, 0}, {0, -1, 1}, {0, -1, -1}};
   const auto& gradient = kGradients[hash & 15];
   return gradient[0] * x + gradient[1] * y + gradient[2] * z;
 }
