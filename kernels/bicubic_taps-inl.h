@@ -8,14 +8,13 @@
 #define VANTAGE_KERNELS_BICUBIC_TAPS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstddef>
 #include <type_traits>
 
 #include "kernels/keys_weights-inl.h"
 #include "kernels/pixel_row/load_as_float-inl.h"
 #include "kernels/pixel_row/pixel_row.h"
+#include "kernels/simd-inl.h"
 
 // A single lane cannot hold the taps.
 #if HWY_TARGET != HWY_SCALAR
@@ -47,9 +46,8 @@ struct TapSums {
 };
 
 // Weights of new pixels i, i + 1, … from the fractions of their positions.
-template <class D, class V = hwy::HWY_NAMESPACE::VFromD<D>>
+template <class D, class V = hn::VFromD<D>>
 HWY_INLINE void store_weights(D d, V fraction_x, V fraction_y, int i, TapSums& sums) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const auto weight_x = keys_weights(d, fraction_x);
   for (int tap = 0; tap < 4; ++tap) {
     hn::StoreU(weight_x.at[tap], d, sums.weight_x[tap] + i);
@@ -62,7 +60,6 @@ HWY_INLINE void store_weights(D d, V fraction_x, V fraction_y, int i, TapSums& s
 // Sums over the four lines for each of the four taps of pixel i; `tap` is the first tap.
 template <int kChannels, typename T>
 HWY_INLINE void sum_down(const T* HWY_RESTRICT tap, std::ptrdiff_t stride, int i, TapSums& sums) {
-  namespace hn = hwy::HWY_NAMESPACE;
   constexpr int kTaps = kTapsLoaded<kChannels>;  // three channels use 12 of them
   const hn::CappedTag<float, kTaps> d;
   const float* weight = sums.weight_y + 4 * i;
@@ -88,9 +85,8 @@ HWY_INLINE void sum_down(const T* HWY_RESTRICT tap, std::ptrdiff_t stride, int i
   }
 }
 
-template <typename T, class D, class V = hwy::HWY_NAMESPACE::VFromD<D>>
+template <typename T, class D, class V = hn::VFromD<D>>
 HWY_INLINE V limited(D d, V sum, V min, V max) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const auto smallest = hn::Min(hn::Zero(d), min);
   const auto largest = hn::Max(hn::Set(d, kLargestValue<T>), max);
   return hn::Min(hn::Max(sum, smallest), largest);
@@ -98,8 +94,7 @@ HWY_INLINE V limited(D d, V sum, V min, V max) {
 
 // Values of grey pixels i, i + 1, …: sums over their four taps.
 template <typename T, class D>
-HWY_INLINE hwy::HWY_NAMESPACE::VFromD<D> sum_along_grey(D d, const TapSums& sums, int i) {
-  namespace hn = hwy::HWY_NAMESPACE;
+HWY_INLINE hn::VFromD<D> sum_along_grey(D d, const TapSums& sums, int i) {
   hn::VFromD<D> tap0;
   hn::VFromD<D> tap1;
   hn::VFromD<D> tap2;
@@ -122,9 +117,7 @@ HWY_INLINE hwy::HWY_NAMESPACE::VFromD<D> sum_along_grey(D d, const TapSums& sums
 
 // Colour pixel i, one vector. With three channels the fourth lane is meaningless.
 template <int kChannels, typename T>
-HWY_INLINE hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::FixedTag<float, 4>> sum_along_colour(
-    const TapSums& sums, int i) {
-  namespace hn = hwy::HWY_NAMESPACE;
+HWY_INLINE hn::VFromD<hn::FixedTag<float, 4>> sum_along_colour(const TapSums& sums, int i) {
   const hn::FixedTag<float, 4> d;
   const auto tap = [&](const float* down, int k)
                        HWY_ATTR { return hn::LoadU(d, down + kTapLanes * i + k * kChannels); };

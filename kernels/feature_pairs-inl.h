@@ -8,28 +8,25 @@
 #define VANTAGE_KERNELS_FEATURE_PAIRS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
 
 #include "kernels/feature_pairs.h"
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 // Values of one channel's planes at one column, or for one vector of candidates.
 template <typename T, int kPlanes>
-using Features =
-    std::array<hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::ScalableTag<T>>, kPlanes>;
+using Features = std::array<hn::VFromD<hn::ScalableTag<T>>, kPlanes>;
 
 // Processes kVectors neighbouring vectors of lanes over all columns. `compare` maps the features of
 // reference and partner to a float vector; its finish() maps the mean over the channels to cells.
 template <int kVectors, int kChannels, bool kClear, typename T, int kPlanes, typename Compare>
 HWY_INLINE void compare_lanes(const FeaturePairs<T, kPlanes>& row, const Compare& compare,
                               int first_lane, float* cells) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<T> d;
   const hn::ScalableTag<float> df;
   const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(hn::Lanes(df));
@@ -89,8 +86,7 @@ HWY_INLINE void compare_lanes(const FeaturePairs<T, kPlanes>& row, const Compare
 template <int kChannels, bool kClearBehind, typename T, int kPlanes, typename Compare>
 HWY_INLINE void compare_columns(const FeaturePairs<T, kPlanes>& row, const Compare& compare,
                                 float* cells) {
-  const int step =
-      static_cast<int>(hwy::HWY_NAMESPACE::Lanes(hwy::HWY_NAMESPACE::ScalableTag<float>()));
+  const int step = static_cast<int>(hn::Lanes(hn::ScalableTag<float>()));
   int lane = 0;
   const int unclear = kClearBehind ? row.count : row.lanes;
   for (; lane + 4 * step <= unclear; lane += 4 * step) {

@@ -7,19 +7,18 @@
 #define VANTAGE_KERNELS_KEYS_WEIGHTS_INL_H_
 #endif
 
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 template <class D>
 struct KeysWeightVectors {
-  hwy::HWY_NAMESPACE::VFromD<D> at[4];
+  hn::VFromD<D> at[4];
 };
 
 template <class D>
-HWY_INLINE KeysWeightVectors<D> keys_weights(D d, hwy::HWY_NAMESPACE::VFromD<D> f) {
-  namespace hn = hwy::HWY_NAMESPACE;
+HWY_INLINE KeysWeightVectors<D> keys_weights(D d, hn::VFromD<D> f) {
   const auto half = hn::Set(d, 0.5F);
   const auto one = hn::Set(d, 1.0F);
   const auto half_f = hn::Mul(half, f);

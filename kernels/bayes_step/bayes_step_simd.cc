@@ -1,8 +1,4 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/bayes_step/bayes_step_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -16,7 +12,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 // p0 · sqrt(product of the star), up to a factor common to all lanes.
 HWY_INLINE FloatVec half_weight(const StarColumns<float>& at, int lane) {

@@ -9,23 +9,21 @@
 #define VANTAGE_KERNELS_BAYES_STEP_POWERS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstdint>
 
 #include "kernels/cells/exp_log.h"
 #include "kernels/cells/lane_sums-inl.h"
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-using PowerBits = hwy::HWY_NAMESPACE::RebindToSigned<FloatTag>;
+using PowerBits = hn::RebindToSigned<FloatTag>;
 
 // 2^exponent, relative error below 3.2e-6, for exponents ≤ 0 (or above by rounding only). kClamped:
 // exponents below kMinExponent are clamped to it; otherwise there must be none.
 template <bool kClamped>
 HWY_INLINE FloatVec power_of_two(FloatVec exponent) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const FloatTag df;
   const PowerBits d32;
   const auto c = [df](float value) HWY_ATTR { return hn::Set(df, value); };
@@ -46,7 +44,6 @@ HWY_INLINE FloatVec power_of_two(FloatVec exponent) {
 class ScaledLogarithm {
  public:
   explicit ScaledLogarithm(float factor) {
-    namespace hn = hwy::HWY_NAMESPACE;
     for (int k = 0; k < kTerms; ++k) {
       terms_[k] = hn::Set(FloatTag(), factor * kPolynomial[k]);
     }
@@ -55,7 +52,6 @@ class ScaledLogarithm {
   }
 
   HWY_INLINE FloatVec of(FloatVec value) const {
-    namespace hn = hwy::HWY_NAMESPACE;
     const FloatTag df;
     const PowerBits d32;
     const auto bits = hn::BitCast(d32, value);
@@ -77,7 +73,7 @@ class ScaledLogarithm {
                                                 0.170634508F};
 
   [[nodiscard]] HWY_INLINE FloatVec line(FloatVec f, int k) const {
-    return hwy::HWY_NAMESPACE::MulAdd(terms_[k + 1], f, terms_[k]);
+    return hn::MulAdd(terms_[k + 1], f, terms_[k]);
   }
 
   FloatVec terms_[kTerms];

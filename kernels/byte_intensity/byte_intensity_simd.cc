@@ -1,16 +1,13 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/byte_intensity/byte_intensity_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "kernels/byte_intensity/byte_intensity.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 void rounded(const float* intensities, int width, std::uint8_t* rounded) {
   const hn::ScalableTag<float> d;
@@ -59,6 +56,23 @@ void rounded_intensity_row(const float* intensities, int width, std::uint8_t* ro
 void halved_intensity_row(const std::uint8_t* upper, const std::uint8_t* lower, int width,
                           std::uint8_t* halved) {
   HWY_DYNAMIC_DISPATCH(halved)(upper, lower, width, halved);
+}
+
+// Scalar reference.
+
+void rounded_intensity_row_ref(const float* intensities, int width, std::uint8_t* rounded) {
+  std::transform(intensities, intensities + width, rounded, [](float intensity) {
+    return static_cast<std::uint8_t>(std::nearbyint(intensity));
+  });
+}
+
+void halved_intensity_row_ref(const std::uint8_t* upper, const std::uint8_t* lower, int width,
+                              std::uint8_t* halved) {
+  for (int x = 0; x < (width + 1) / 2; ++x) {
+    const int right = std::min(2 * x + 1, width - 1);
+    halved[x] = static_cast<std::uint8_t>(
+        (upper[2 * x] + upper[right] + lower[2 * x] + lower[right] + 2) / 4);
+  }
 }
 
 }  // namespace vantage::kernels

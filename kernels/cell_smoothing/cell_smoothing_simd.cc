@@ -1,8 +1,4 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/cell_smoothing/cell_smoothing_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,7 +8,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::ScalableTag<float>;
 using Vec = hn::VFromD<Tag>;
@@ -211,6 +206,63 @@ void symmetric_sum(const SymmetricSum& sum, float* output) {
 }
 void box_cascade_row(const BoxCascade& cascade, float* work, float* output) {
   HWY_DYNAMIC_DISPATCH(cascade_row)(cascade, work, output);
+}
+
+// Scalar reference.
+
+void symmetric_sum_ref(const SymmetricSum& sum, float* output) {
+  const float* const* middle = sum.runs + sum.radius;
+  for (int i = 0; i < sum.count; ++i) {
+    output[i] = sum.weights[0] * middle[0][i];
+    for (int k = 1; k <= sum.radius; ++k) {
+      const float* before = middle[-k];
+      const float* after = middle[k];
+      if (before != nullptr && after != nullptr) {
+        output[i] += sum.weights[k] * (before[i] + after[i]);
+      } else if (before != nullptr || after != nullptr) {
+        output[i] += sum.weights[k] * (before != nullptr ? before : after)[i];
+      }
+    }
+  }
+}
+
+namespace {
+
+// One lane of a cascade. Each function returns the row at column x after one more filter.
+struct Lane {
+  const BoxCascade& cascade;
+  std::ptrdiff_t lane;
+
+  [[nodiscard]] float down(int x) const {
+    if (x < cascade.input_begin || x >= cascade.input_end) {
+      return 0;
+    }
+    const std::ptrdiff_t cell =
+        static_cast<std::ptrdiff_t>(x - cascade.input_begin) * cascade.lanes + lane;
+    const float* cells[2 * BoxCascade::kRadius + 1];
+    for (int k = 0; k <= 2 * BoxCascade::kRadius; ++k) {
+      cells[k] = cascade.rows[k] == nullptr ? nullptr : cascade.rows[k] + cell;
+    }
+    float sum = 0;
+    symmetric_sum_ref({cells, BoxCascade::kWeights.data(), BoxCascade::kRadius, 1}, &sum);
+    return sum;
+  }
+  [[nodiscard]] float first(int x) const { return down(x - 1) + down(x) + down(x + 1); }
+  [[nodiscard]] float second(int x) const { return first(x - 1) + first(x) + first(x + 1); }
+  [[nodiscard]] float third(int x) const { return second(x - 1) + second(x) + second(x + 1); }
+  [[nodiscard]] float fourth(int x) const {
+    return (third(x + 2) + third(x + 1)) + (third(x) + third(x - 1) + third(x - 2));
+  }
+};
+
+}  // namespace
+
+void box_cascade_row_ref(const BoxCascade& cascade, float* output) {
+  for (int x = cascade.output_begin; x < cascade.output_end; ++x) {
+    for (int i = 0; i < cascade.lanes; ++i) {
+      *output++ = Lane{cascade, i}.fourth(x) * BoxCascade::kUnitGain;
+    }
+  }
 }
 
 }  // namespace vantage::kernels

@@ -8,24 +8,23 @@
 #define VANTAGE_KERNELS_LANE_TREES_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include "kernels/candidates.h"
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-using TagF = hwy::HWY_NAMESPACE::ScalableTag<float>;
-using VecF = hwy::HWY_NAMESPACE::VFromD<TagF>;
-constexpr int kStep = static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes(TagF()));
+using TagF = hn::ScalableTag<float>;
+using VecF = hn::VFromD<TagF>;
+constexpr int kStep = static_cast<int>(hn::MaxLanes(TagF()));
 /// Vectors that hold one value for each of kLaneMultiple lanes.
 constexpr int kParts = kLaneMultiple / kStep;
 
 struct Sum {
-  static HWY_INLINE VecF joined(VecF a, VecF b) { return hwy::HWY_NAMESPACE::Add(a, b); }
+  static HWY_INLINE VecF joined(VecF a, VecF b) { return hn::Add(a, b); }
 };
 struct Minimum {
-  static HWY_INLINE VecF joined(VecF a, VecF b) { return hwy::HWY_NAMESPACE::Min(a, b); }
+  static HWY_INLINE VecF joined(VecF a, VecF b) { return hn::Min(a, b); }
 };
 
 // Every second lane of `low` followed by `high`, starting at the first lane (even) or the second
@@ -35,7 +34,7 @@ HWY_INLINE VecF even_lanes(VecF low, VecF high) {
   (void)high;
   return low;
 #else
-  return hwy::HWY_NAMESPACE::ConcatEven(TagF(), high, low);
+  return hn::ConcatEven(TagF(), high, low);
 #endif
 }
 HWY_INLINE VecF odd_lanes(VecF low, VecF high) {
@@ -43,7 +42,7 @@ HWY_INLINE VecF odd_lanes(VecF low, VecF high) {
   (void)low;
   return high;
 #else
-  return hwy::HWY_NAMESPACE::ConcatOdd(TagF(), high, low);
+  return hn::ConcatOdd(TagF(), high, low);
 #endif
 }
 
@@ -53,7 +52,7 @@ HWY_INLINE VecF odd_lanes(VecF low, VecF high) {
 template <class Operation, int kCount>
 HWY_INLINE VecF joined_lanes(const float* values) {
   if constexpr (kCount == 1) {
-    return hwy::HWY_NAMESPACE::Load(TagF(), values);
+    return hn::Load(TagF(), values);
   } else {
     const VecF low = joined_lanes<Operation, kCount / 2>(values);
     const VecF high = joined_lanes<Operation, kCount / 2>(values + kCount / 2 * kStep);
@@ -70,7 +69,6 @@ struct TwoSmallest {
 // Same for values that are given as pairs (smallest, second smallest).
 template <int kCount>
 HWY_INLINE TwoSmallest joined_two_smallest(const float* min, const float* second) {
-  namespace hn = hwy::HWY_NAMESPACE;
   if constexpr (kCount == 1) {
     return {hn::Load(TagF(), min), hn::Load(TagF(), second)};
   } else {

@@ -8,9 +8,9 @@
 #define VANTAGE_KERNELS_LOGARITHM_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstdint>
+
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
@@ -18,8 +18,7 @@ namespace vantage::kernels::HWY_NAMESPACE {
 // log x for positive normal doubles, accurate to a few units in the last place. (Highway's version
 // fuses multiplications and additions where it can, so it differs between instruction sets.)
 template <class D64>
-HWY_INLINE auto natural_logarithm(D64 d64, hwy::HWY_NAMESPACE::VFromD<D64> x) {
-  namespace hn = hwy::HWY_NAMESPACE;
+HWY_INLINE auto natural_logarithm(D64 d64, hn::VFromD<D64> x) {
   const hn::Rebind<std::int64_t, D64> di64;
   // x = m · 2^e with √½ ≤ m < √2: subtracting the bits of √½ leaves e above the fraction.
   const auto bits = hn::BitCast(di64, x);

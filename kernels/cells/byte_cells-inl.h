@@ -7,10 +7,10 @@
 #define VANTAGE_KERNELS_BYTE_CELLS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstddef>
 #include <cstdint>
+
+#include "kernels/simd-inl.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
@@ -21,18 +21,17 @@ namespace vantage::kernels::HWY_NAMESPACE {
 // bytes to words and words to floats then gives the lanes in order.
 
 template <class D8>
-using Tag16 = hwy::HWY_NAMESPACE::Repartition<std::uint16_t, D8>;
+using Tag16 = hn::Repartition<std::uint16_t, D8>;
 template <class D8>
-using Tag32 = hwy::HWY_NAMESPACE::Repartition<std::uint32_t, D8>;
+using Tag32 = hn::Repartition<std::uint32_t, D8>;
 template <class D8>
-using TagFloat = hwy::HWY_NAMESPACE::Repartition<float, D8>;
+using TagFloat = hn::Repartition<float, D8>;
 template <class D>
-using VecOf = hwy::HWY_NAMESPACE::VFromD<D>;
+using VecOf = hn::VFromD<D>;
 
 // Converts bytes from lane order to grouped order.
 template <class D8>
 HWY_INLINE VecOf<D8> grouped(D8 d, VecOf<D8> bytes) {
-  namespace hn = hwy::HWY_NAMESPACE;
   constexpr std::size_t kBlocks = hn::MaxLanes(D8()) / 16;
   if constexpr (kBlocks == 1) {
     return bytes;
@@ -52,7 +51,6 @@ HWY_INLINE VecOf<D8> grouped(D8 d, VecOf<D8> bytes) {
 // Number of set bits in each byte.
 template <class D8>
 HWY_INLINE VecOf<D8> bits_of_bytes(D8 d, VecOf<D8> bytes) {
-  namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_AVX3_DL
   (void)d;
   return hn::PopulationCount(bytes);

@@ -7,26 +7,24 @@
 #define VANTAGE_KERNELS_CELLS_ENERGY_VECTORS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstdint>
 
 #include "kernels/candidates.h"
 #include "kernels/cells/fixed_energy.h"
+#include "kernels/simd-inl.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 // At most kLaneMultiple lanes, so that columns are always whole vectors.
-using EnergyTag = hwy::HWY_NAMESPACE::CappedTag<FixedEnergy, kLaneMultiple>;
-using EnergyVec = hwy::HWY_NAMESPACE::VFromD<EnergyTag>;
-inline constexpr int kEnergyLanes = static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes(EnergyTag()));
+using EnergyTag = hn::CappedTag<FixedEnergy, kLaneMultiple>;
+using EnergyVec = hn::VFromD<EnergyTag>;
+inline constexpr int kEnergyLanes = static_cast<int>(hn::MaxLanes(EnergyTag()));
 
 // Minimum over the lanes, in every lane.
 template <class Vec>
 HWY_INLINE Vec min_of_lanes(Vec energies) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::DFromV<Vec> d;
   // Energies are not negative, so unsigned: processors find the minimum of eight unsigned words in
   // one instruction.

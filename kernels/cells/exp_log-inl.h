@@ -7,25 +7,22 @@
 #define VANTAGE_KERNELS_CELLS_EXP_LOG_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstdint>
 
 #include "kernels/cells/exp_log.h"
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-using ExpLogVec = hwy::HWY_NAMESPACE::VFromD<hwy::HWY_NAMESPACE::ScalableTag<float>>;
+using ExpLogVec = hn::VFromD<hn::ScalableTag<float>>;
 
 // a · b + c with two roundings, as in exp_log.h.
 HWY_INLINE ExpLogVec multiply_add(ExpLogVec a, ExpLogVec b, ExpLogVec c) {
-  namespace hn = hwy::HWY_NAMESPACE;
   return hn::Add(hn::Mul(a, b), c);
 }
 
 HWY_INLINE ExpLogVec exp2_of_negative(ExpLogVec exponent) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<float> df;
   const hn::ScalableTag<std::int32_t> d32;
   const ExpLogVec round = hn::Set(df, kRoundToInteger);
@@ -44,7 +41,6 @@ HWY_INLINE ExpLogVec exp2_of_negative(ExpLogVec exponent) {
 }
 
 HWY_INLINE ExpLogVec log_of_normal(ExpLogVec value) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<float> df;
   const hn::ScalableTag<std::int32_t> d32;
   const auto bits = hn::BitCast(d32, value);

@@ -8,17 +8,16 @@
 #define VANTAGE_KERNELS_LANE_SUMS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include "kernels/candidates.h"
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-using FloatTag = hwy::HWY_NAMESPACE::ScalableTag<float>;
-using FloatVec = hwy::HWY_NAMESPACE::VFromD<FloatTag>;
+using FloatTag = hn::ScalableTag<float>;
+using FloatVec = hn::VFromD<FloatTag>;
 
-inline constexpr int kFloatLanes = static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes(FloatTag()));
+inline constexpr int kFloatLanes = static_cast<int>(hn::MaxLanes(FloatTag()));
 /// Vectors that hold kLaneMultiple lanes.
 inline constexpr int kParts = kLaneMultiple / kFloatLanes;
 static_assert(kParts * kFloatLanes == kLaneMultiple);
@@ -37,7 +36,6 @@ struct LaneBlock16 {
 /// Reduces the lanes of `block` by the tree ((l + (l+8)) + (l+4)) + …; the result is in every lane.
 template <class Operation>
 HWY_INLINE FloatVec fold_lanes(LaneBlock16 block, Operation operation) {
-  namespace hn = hwy::HWY_NAMESPACE;
   for (int half = kParts / 2; half >= 1; half /= 2) {
     for (int p = 0; p < half; ++p) {
       block.part[p] = operation(block.part[p], block.part[p + half]);
@@ -58,18 +56,15 @@ HWY_INLINE FloatVec fold_lanes(LaneBlock16 block, Operation operation) {
 }
 
 HWY_INLINE FloatVec sum_lanes(const LaneBlock16& block) {
-  return fold_lanes(block,
-                    [](FloatVec a, FloatVec b) HWY_ATTR { return hwy::HWY_NAMESPACE::Add(a, b); });
+  return fold_lanes(block, [](FloatVec a, FloatVec b) HWY_ATTR { return hn::Add(a, b); });
 }
 
 HWY_INLINE FloatVec max_lanes(const LaneBlock16& block) {
-  return fold_lanes(block,
-                    [](FloatVec a, FloatVec b) HWY_ATTR { return hwy::HWY_NAMESPACE::Max(a, b); });
+  return fold_lanes(block, [](FloatVec a, FloatVec b) HWY_ATTR { return hn::Max(a, b); });
 }
 
 HWY_INLINE FloatVec min_lanes(const LaneBlock16& block) {
-  return fold_lanes(block,
-                    [](FloatVec a, FloatVec b) HWY_ATTR { return hwy::HWY_NAMESPACE::Min(a, b); });
+  return fold_lanes(block, [](FloatVec a, FloatVec b) HWY_ATTR { return hn::Min(a, b); });
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE

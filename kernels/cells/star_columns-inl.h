@@ -7,10 +7,9 @@
 #define VANTAGE_KERNELS_CELLS_STAR_COLUMNS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <type_traits>
 
+#include "kernels/simd-inl.h"
 #include "kernels/star_row.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,8 +1,4 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/colour_fetch/colour_fetch_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
 #include <limits>
@@ -18,7 +14,6 @@ void fetch_bicubic(const BicubicFetchRow& row, float* colours) {
   fetch_bicubic_row_ref(row, colours);
 }
 #else
-namespace hn = hwy::HWY_NAMESPACE;
 
 // Positions whose columns and weights are computed at a time; a multiple of every vector length.
 constexpr int kBlock = 64;

@@ -1,14 +1,9 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/colour_order/colour_order_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include "kernels/colour_order/colour_order.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 template <typename T>
 HWY_INLINE void turn_colours_of(const T* HWY_RESTRICT pixels, int width, T* HWY_RESTRICT turned) {
@@ -56,6 +51,33 @@ void opposite_colour_order_row(const std::uint16_t* pixels, int width, std::uint
 
 void opposite_colour_order_row(const float* pixels, int width, float* turned) {
   HWY_DYNAMIC_DISPATCH(turn_colours_float)(pixels, width, turned);
+}
+
+// Scalar reference.
+
+namespace {
+
+template <typename T>
+void turn_colours(const T* pixels, int width, T* turned) {
+  for (int x = 0; x < width; ++x) {
+    turned[3 * x] = pixels[3 * x + 2];
+    turned[3 * x + 1] = pixels[3 * x + 1];
+    turned[3 * x + 2] = pixels[3 * x];
+  }
+}
+
+}  // namespace
+
+void opposite_colour_order_row_ref(const std::uint8_t* pixels, int width, std::uint8_t* turned) {
+  turn_colours(pixels, width, turned);
+}
+
+void opposite_colour_order_row_ref(const std::uint16_t* pixels, int width, std::uint16_t* turned) {
+  turn_colours(pixels, width, turned);
+}
+
+void opposite_colour_order_row_ref(const float* pixels, int width, float* turned) {
+  turn_colours(pixels, width, turned);
 }
 
 }  // namespace vantage::kernels

@@ -1,9 +1,6 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/column_ssd/column_ssd_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
+#include <cmath>
 #include <cstddef>
 
 #include "kernels/candidates.h"
@@ -11,7 +8,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag32 = hn::ScalableTag<std::int32_t>;
 using Vec32 = hn::VFromD<Tag32>;
@@ -178,6 +174,56 @@ void column_ssd_row(const ColumnSsdPairs& row, const std::int32_t* previous, std
 }
 void column_ssd_row(const ColumnSsdFloat& row, const std::int32_t* previous, std::int32_t* sums) {
   HWY_DYNAMIC_DISPATCH(column_ssd_float)(row, previous, sums);
+}
+
+// Scalar reference.
+
+namespace {
+
+int low_half(std::int32_t pair) { return static_cast<std::int16_t>(pair & 0xFFFF); }
+int high_half(std::int32_t pair) { return static_cast<std::int16_t>(pair >> 16); }
+
+std::int32_t rounded_square(const float* reference, const float* partner, int j, int k) {
+  if (reference == nullptr) {
+    return 0;
+  }
+  const float difference = reference[j] - partner[k];
+  return static_cast<std::int32_t>(std::lrint(difference * difference));
+}
+
+// Modulo 2³²: the entering row may carry a sum past 2³¹ before the leaving one is subtracted.
+std::int32_t changed(std::int32_t sum, std::int32_t enters, std::int32_t leaves) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(sum) +
+                                   static_cast<std::uint32_t>(enters) -
+                                   static_cast<std::uint32_t>(leaves));
+}
+
+}  // namespace
+
+void column_ssd_row_ref(const ColumnSsdPairs& row, const std::int32_t* previous,
+                        std::int32_t* sums) {
+  for (int j = 0; j < row.columns; ++j) {
+    for (int i = 0; i < row.lanes; ++i) {
+      const int k = j * row.partner_step + i;
+      const int entering = low_half(row.reference[j]) - low_half(row.partner[k]);
+      const int leaving = high_half(row.reference[j]) - high_half(row.partner[k]);
+      const int cell = j * row.lanes + i;
+      sums[cell] = changed(previous[cell], entering * entering, leaving * leaving);
+    }
+  }
+}
+
+void column_ssd_row_ref(const ColumnSsdFloat& row, const std::int32_t* previous,
+                        std::int32_t* sums) {
+  for (int j = 0; j < row.columns; ++j) {
+    for (int i = 0; i < row.lanes; ++i) {
+      const int k = j * row.partner_step + i;
+      const int cell = j * row.lanes + i;
+      sums[cell] = changed(previous[cell],
+                           rounded_square(row.reference_entering, row.partner_entering, j, k),
+                           rounded_square(row.reference_leaving, row.partner_leaving, j, k));
+    }
+  }
 }
 
 }  // namespace vantage::kernels

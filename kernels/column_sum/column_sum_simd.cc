@@ -1,16 +1,12 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/column_sum/column_sum_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
+#include <cmath>
 #include <cstddef>
 
 #include "kernels/column_sum/column_sum.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag32 = hn::ScalableTag<std::int32_t>;
 using Vec32 = hn::VFromD<Tag32>;
@@ -67,6 +63,20 @@ HWY_EXPORT(column_sum);
 
 void column_sum_row(const ColumnSum& row, const std::int32_t* previous, std::int32_t* sums) {
   HWY_DYNAMIC_DISPATCH(column_sum)(row, previous, sums);
+}
+
+// Scalar reference.
+
+void column_sum_row_ref(const ColumnSum& row, const std::int32_t* previous, std::int32_t* sums) {
+  const auto quantised = [&](const float* costs, int i) {
+    return costs == nullptr
+               ? 0U
+               : static_cast<std::uint32_t>(std::lrint((costs[i] + row.offset) * row.scale));
+  };
+  for (int i = 0; i < row.count; ++i) {
+    sums[i] = static_cast<std::int32_t>(static_cast<std::uint32_t>(previous[i]) +
+                                        quantised(row.entering, i) - quantised(row.leaving, i));
+  }
 }
 
 }  // namespace vantage::kernels

@@ -8,24 +8,22 @@
 #define VANTAGE_KERNELS_REDUCED_SUMS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstddef>
 #include <cstdint>
 
 #include "kernels/cells/byte_cells-inl.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
+#include "kernels/simd-inl.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-using SumTag = hwy::HWY_NAMESPACE::CappedTag<std::uint16_t, 8>;
+using SumTag = hn::CappedTag<std::uint16_t, 8>;
 
 // Calls body(d, lane) for the vectors of bytes that make up a column: the widest ones that fit.
 template <class Body>
 HWY_INLINE void each_lane_vector(int lanes, const Body& body) {
-  namespace hn = hwy::HWY_NAMESPACE;
   int lane = 0;
   const auto while_it_fits = [&](auto d) HWY_ATTR {
     const int step = static_cast<int>(hn::Lanes(d));
@@ -41,7 +39,6 @@ HWY_INLINE void each_lane_vector(int lanes, const Body& body) {
 // Minimum per lane over the 128-bit blocks.
 template <class D16>
 HWY_INLINE VecOf<SumTag> fold_min(D16 d16, VecOf<D16> sums) {
-  namespace hn = hwy::HWY_NAMESPACE;
   if constexpr (hn::MaxLanes(D16()) == hn::MaxLanes(SumTag())) {
     return sums;
   } else {
@@ -54,7 +51,6 @@ HWY_INLINE VecOf<SumTag> fold_min(D16 d16, VecOf<D16> sums) {
 // each_lane_vector(): first those of its even lanes, then those of its odd ones.
 HWY_INLINE void weigh_sums(const std::uint16_t* sums, int lanes, std::uint16_t bottom,
                            std::int16_t units, std::uint8_t* energies) {
-  namespace hn = hwy::HWY_NAMESPACE;
   each_lane_vector(lanes, [&](auto d, int lane) HWY_ATTR {
     using D8 = decltype(d);
     const Tag16<D8> d16;

@@ -1,15 +1,13 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/edge_weights/edge_weights_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
+
+#include <cmath>
 
 #include "kernels/cells/exp_log-inl.h"
+#include "kernels/cells/exp_log.h"
 #include "kernels/edge_weights/edge_weights.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 void edge_weights(const float* first, const float* second, int count, const EdgeModel& model,
                   float* weights) {
@@ -60,6 +58,24 @@ void edge_weights_row(const float* first, const float* second, int count, const 
 }
 void fixed_weights_row(const float* weights, int count, float factor, FixedWeight* fixed) {
   HWY_DYNAMIC_DISPATCH(fixed_weights)(weights, count, factor, fixed);
+}
+
+// Scalar reference.
+
+void edge_weights_row_ref(const float* first, const float* second, int count,
+                          const EdgeModel& model, float* weights) {
+  const float exponent_of_level = -kLog2E / model.contrast;
+  const float rest = 1.0F - model.min;
+  for (int x = 0; x < count; ++x) {
+    const float difference = std::abs(first[x] - second[x]);
+    weights[x] = rest * exp2_of_negative(difference * exponent_of_level) + model.min;
+  }
+}
+
+void fixed_weights_row_ref(const float* weights, int count, float factor, FixedWeight* fixed) {
+  for (int x = 0; x < count; ++x) {
+    fixed[x] = fixed_weight(weights[x] * factor);
+  }
 }
 
 }  // namespace vantage::kernels

@@ -7,26 +7,23 @@
 #define VANTAGE_KERNELS_EVIDENCE_GRADIENT_NORM_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include "kernels/evidence/gradient_norm.h"
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-using NormTag = hwy::HWY_NAMESPACE::ScalableTag<float>;
-using NormVec = hwy::HWY_NAMESPACE::VFromD<NormTag>;
+using NormTag = hn::ScalableTag<float>;
+using NormVec = hn::VFromD<NormTag>;
 
 struct NormL2 {
   HWY_INLINE NormVec operator()(NormVec x, NormVec y) const {
-    namespace hn = hwy::HWY_NAMESPACE;
     return hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
   }
 };
 
 struct NormOctagon {
   HWY_INLINE NormVec operator()(NormVec x, NormVec y) const {
-    namespace hn = hwy::HWY_NAMESPACE;
     const NormTag d;
     const NormVec across = hn::Abs(x);
     const NormVec down = hn::Abs(y);
@@ -37,22 +34,18 @@ struct NormOctagon {
 
 struct NormL1 {
   HWY_INLINE NormVec operator()(NormVec x, NormVec y) const {
-    namespace hn = hwy::HWY_NAMESPACE;
     return hn::Add(hn::Abs(x), hn::Abs(y));
   }
 };
 
 struct NormMax {
   HWY_INLINE NormVec operator()(NormVec x, NormVec y) const {
-    namespace hn = hwy::HWY_NAMESPACE;
     return hn::Max(hn::Abs(x), hn::Abs(y));
   }
 };
 
 struct NormAcross {
-  HWY_INLINE NormVec operator()(NormVec x, NormVec /*y*/) const {
-    return hwy::HWY_NAMESPACE::Abs(x);
-  }
+  HWY_INLINE NormVec operator()(NormVec x, NormVec /*y*/) const { return hn::Abs(x); }
 };
 
 /// visit(the norm).

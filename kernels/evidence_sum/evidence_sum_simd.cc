@@ -1,16 +1,12 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/evidence_sum/evidence_sum_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
+
+#include <algorithm>
 
 #include "kernels/evidence/gradient_norm-inl.h"
-
 #include "kernels/evidence_sum/evidence_sum.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::ScalableTag<float>;
 using Vec = hn::VFromD<Tag>;
@@ -79,6 +75,35 @@ HWY_EXPORT(evidence_sum_simd);
 
 double evidence_sum(const EvidenceBlock& block) {
   return HWY_DYNAMIC_DISPATCH(evidence_sum_simd)(block);
+}
+
+// Scalar reference.
+
+double pairwise_sum(const float* lanes) {
+  double sums[kLaneMultiple];
+  std::copy_n(lanes, kLaneMultiple, sums);
+  for (int half = kLaneMultiple / 2; half > 0; half /= 2) {
+    for (int lane = 0; lane < half; ++lane) {
+      sums[lane] += sums[lane + half];
+    }
+  }
+  return sums[0];
+}
+
+double evidence_sum_ref(const EvidenceBlock& block) {
+  const auto& [reference, partner, columns, rows, norm] = block;
+  float lanes[kLaneMultiple] = {};
+  for (int row = 0; row < rows; ++row) {
+    for (int j = 0; j < columns; ++j) {
+      const std::ptrdiff_t at = row * reference.row_stride + j;
+      const std::ptrdiff_t partner_at = row * partner.row_stride + j;
+      const float dx = reference.x[at] - partner.x[partner_at];
+      const float dy = reference.y[at] - partner.y[partner_at];
+      lanes[j % kLaneMultiple] +=
+          reference.half_norm[at] + partner.half_norm[partner_at] - gradient_norm(dx, dy, norm);
+    }
+  }
+  return pairwise_sum(lanes);
 }
 
 }  // namespace vantage::kernels

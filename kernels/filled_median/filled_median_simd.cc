@@ -1,8 +1,4 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/filled_median/filled_median_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -13,7 +9,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 // Scanning all samples in every round is worthwhile only with several lanes.

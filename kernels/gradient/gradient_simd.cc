@@ -1,14 +1,11 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/gradient/gradient_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
+
+#include <cstddef>
 
 #include "kernels/gradient/gradient.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::ScalableTag<float>;
 
@@ -47,6 +44,25 @@ HWY_EXPORT(separable_filter);
 
 void separable_filter_row(const SeparableFilter& filter, float* work, float* filtered) {
   HWY_DYNAMIC_DISPATCH(separable_filter)(filter, work, filtered);
+}
+
+// Scalar reference.
+
+void separable_filter_row_ref(const SeparableFilter& filter, float* work, float* filtered) {
+  for (int k = 0; k < filter.width + 2 * kFilterRadius; ++k) {
+    float sum = 0;
+    for (std::size_t i = 0; i < filter.down.size(); ++i) {
+      sum += filter.down[i] * filter.rows[i][k - kFilterRadius];
+    }
+    work[k] = sum;
+  }
+  for (int x = 0; x < filter.width; ++x) {
+    float sum = 0;
+    for (std::size_t i = 0; i < filter.along.size(); ++i) {
+      sum += filter.along[i] * work[x + static_cast<int>(i)];
+    }
+    filtered[x] = sum;
+  }
 }
 
 }  // namespace vantage::kernels

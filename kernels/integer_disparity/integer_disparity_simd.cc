@@ -1,16 +1,13 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/integer_disparity/integer_disparity_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "kernels/integer_disparity/integer_disparity.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 int integer_disparity(const float* disparity_px, int width, std::uint16_t* stored) {
   const hn::ScalableTag<float> d;
@@ -47,6 +44,23 @@ HWY_EXPORT(integer_disparity);
 
 int integer_disparity_row(const float* disparity_px, int width, std::uint16_t* stored) {
   return HWY_DYNAMIC_DISPATCH(integer_disparity)(disparity_px, width, stored);
+}
+
+// Scalar reference.
+
+int integer_disparity_row_ref(const float* disparity_px, int width, std::uint16_t* stored) {
+  for (int x = 0; x < width; ++x) {
+    if (!std::isfinite(disparity_px[x])) {
+      stored[x] = 0;
+      continue;
+    }
+    const double rounded = std::round(double{disparity_px[x]} * kIntegerUnitsPerPx);
+    if (rounded < 0 || rounded > std::numeric_limits<std::uint16_t>::max()) {
+      return x;
+    }
+    stored[x] = static_cast<std::uint16_t>(std::max(rounded, 1.0));
+  }
+  return width;
 }
 
 }  // namespace vantage::kernels

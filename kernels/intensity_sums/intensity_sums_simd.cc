@@ -1,11 +1,8 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/intensity_sums/intensity_sums_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 #include "kernels/intensity_sums/intensity_sums.h"
@@ -13,7 +10,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 // One channel per lane: each channel is summed from left to right, as in the reference.
 constexpr int kChannels = 4;
@@ -98,6 +94,46 @@ HWY_EXPORT(sums_of_row);
 
 IntensitySums intensity_sums_row(const WarpedPairRow& row) {
   return HWY_DYNAMIC_DISPATCH(sums_of_row)(row);
+}
+
+// Scalar reference.
+
+namespace {
+
+template <int kLanes>
+IntensitySums sums_of(const WarpedPairRow& row) {
+  IntensitySums sums;
+  for (int x = 0; x < row.width; ++x) {
+    // False if either is NaN.
+    if (std::abs(row.left_disparity_px[x] - row.right_disparity_px[x]) <= row.gradient_limit_px) {
+      ++sums.pixels;
+      for (int c = 0; c < kLanes; ++c) {
+        const double left = row.left_colours[x * kLanes + c];
+        const double right = row.right_colours[x * kLanes + c];
+        sums.left[c] += left;
+        sums.right[c] += right;
+        sums.left_right[c] += left * right;
+        sums.left_left[c] += left * left;
+      }
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+void IntensitySums::add(const IntensitySums& other) {
+  pixels += other.pixels;
+  for (int c = 0; c < 4; ++c) {
+    left[c] += other.left[c];
+    right[c] += other.right[c];
+    left_right[c] += other.left_right[c];
+    left_left[c] += other.left_left[c];
+  }
+}
+
+IntensitySums intensity_sums_row_ref(const WarpedPairRow& row) {
+  return row.lanes == 1 ? sums_of<1>(row) : sums_of<4>(row);
 }
 
 }  // namespace vantage::kernels

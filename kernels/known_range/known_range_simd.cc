@@ -1,14 +1,12 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/known_range/known_range_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
+
+#include <algorithm>
+#include <cmath>
 
 #include "kernels/known_range/known_range.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 KnownRange known_range(const float* disparity_px, int count, KnownRange range) {
   const hn::ScalableTag<float> d;
@@ -40,6 +38,18 @@ HWY_EXPORT(known_range);
 
 KnownRange known_range_row(const float* disparity_px, int count, KnownRange range) {
   return HWY_DYNAMIC_DISPATCH(known_range)(disparity_px, count, range);
+}
+
+// Scalar reference.
+
+KnownRange known_range_row_ref(const float* disparity_px, int count, KnownRange range) {
+  for (int i = 0; i < count; ++i) {
+    if (std::isfinite(disparity_px[i])) {
+      range.min = std::min(range.min, disparity_px[i]);
+      range.max = std::max(range.max, disparity_px[i]);
+    }
+  }
+  return range;
 }
 
 }  // namespace vantage::kernels

@@ -1,8 +1,4 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/luma_intensity/luma_intensity_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -11,7 +7,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 void luma_intensity(const std::uint8_t* HWY_RESTRICT pixels, int width, int channels,
                     std::uint8_t* HWY_RESTRICT intensities) {
@@ -99,6 +94,26 @@ void luma_intensity_row(const std::uint8_t* pixels, int width, int channels,
 }
 void luma_row(const std::uint8_t* pixels, int width, int channels, float* output) {
   HWY_DYNAMIC_DISPATCH(luma)(pixels, width, channels, output);
+}
+
+// Scalar reference.
+
+void luma_intensity_row_ref(const std::uint8_t* pixels, int width, int channels,
+                            std::uint8_t* intensities) {
+  for (int x = 0; x < width; ++x, pixels += channels) {
+    intensities[x] = channels == 1
+                         ? pixels[0]
+                         : static_cast<std::uint8_t>(
+                               (77 * pixels[0] + 150 * pixels[1] + 29 * pixels[2] + 128) / 256);
+  }
+}
+
+void luma_row_ref(const std::uint8_t* pixels, int width, int channels, float* luma) {
+  for (int x = 0; x < width; ++x, pixels += channels) {
+    luma[x] = kLumaRed * static_cast<float>(pixels[0]) +
+              kLumaGreen * static_cast<float>(pixels[1]) +
+              kLumaBlue * static_cast<float>(pixels[2]);
+  }
 }
 
 }  // namespace vantage::kernels

@@ -1,18 +1,15 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/map_enlargement/map_enlargement_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <cstring>
 
 #include "kernels/map_enlargement/map_enlargement.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 using TagF = hn::ScalableTag<float>;
 using TagI = hn::RebindToSigned<TagF>;
@@ -126,6 +123,36 @@ HWY_EXPORT(enlarge);
 
 void enlarge_map_row(const EnlargedRow& row, float* disparity_px) {
   HWY_DYNAMIC_DISPATCH(enlarge)(row, disparity_px);
+}
+
+// Scalar reference.
+
+void enlarge_map_row_ref(const EnlargedRow& row, int begin, int end, float* disparity_px) {
+  const int last = (row.width - 1) / 2;
+  for (int x = begin; x < end; ++x) {
+    const int own = x / 2;
+    const int beside = std::clamp(x % 2 == 0 ? own - 1 : own + 1, 0, last);
+    const float value = row.own_px[own];
+    const auto difference = [&](std::uint8_t intensity) {
+      return std::abs(row.intensities[x] - intensity);
+    };
+    const auto quarter = [&](float other) {
+      const float step = other - value;
+      return std::fabs(step) <= kEnlargedSurfaceStepPx ? step * 0.25F : 0.0F;
+    };
+    float result = value + (quarter(row.own_px[beside]) + quarter(row.beside_px[own]));
+    int nearest = difference(row.own_intensities[own]) - kEnlargedPreference;
+    const auto consider = [&](float other, std::uint8_t intensity) {
+      if (std::fabs(other - value) > kEnlargedSurfaceStepPx && difference(intensity) < nearest) {
+        nearest = difference(intensity);
+        result = other;
+      }
+    };
+    consider(row.own_px[beside], row.own_intensities[beside]);
+    consider(row.beside_px[own], row.beside_intensities[own]);
+    consider(row.beside_px[beside], row.beside_intensities[beside]);
+    disparity_px[x] = result;
+  }
 }
 
 }  // namespace vantage::kernels

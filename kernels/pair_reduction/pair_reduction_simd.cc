@@ -1,8 +1,4 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/pair_reduction/pair_reduction_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +44,6 @@ SumBlocks sum_blocks(int columns, int lanes, int disparity_min) {
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 void start(const PairRow& row) { start_pair_row_ref(row); }

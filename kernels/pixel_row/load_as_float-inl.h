@@ -8,17 +8,16 @@
 #define VANTAGE_KERNELS_LOAD_AS_FLOAT_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstdint>
 #include <type_traits>
+
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 template <class D, typename T>
-HWY_INLINE hwy::HWY_NAMESPACE::VFromD<D> load_as_float(D d, const T* values) {
-  namespace hn = hwy::HWY_NAMESPACE;
+HWY_INLINE hn::VFromD<D> load_as_float(D d, const T* values) {
   if constexpr (std::is_same_v<T, float>) {
     return hn::LoadU(d, values);
   } else {

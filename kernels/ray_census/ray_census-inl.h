@@ -8,8 +8,6 @@
 #define VANTAGE_KERNELS_RAY_CENSUS_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -17,6 +15,7 @@
 #include "kernels/cells/byte_cells-inl.h"
 #include "kernels/census/census.h"
 #include "kernels/ray_census/ray_census.h"
+#include "kernels/simd-inl.h"
 
 #if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
@@ -26,13 +25,11 @@ namespace vantage::kernels::HWY_NAMESPACE {
 template <int kThresholds, class D8>
 class CodeDistance {
  public:
-  explicit HWY_INLINE CodeDistance(D8 d)
-      : ones_(hwy::HWY_NAMESPACE::Zero(d)), twos_(hwy::HWY_NAMESPACE::Zero(d)) {}
+  explicit HWY_INLINE CodeDistance(D8 d) : ones_(hn::Zero(d)), twos_(hn::Zero(d)) {}
 
   // Adds a whole code. own(p), other(p): its bytes, see RayCensusCodes.
   template <class Own, class Other>
   HWY_INLINE void add(D8 d, const Own& own, const Other& other) {
-    namespace hn = hwy::HWY_NAMESPACE;
 #pragma GCC unroll 3
     for (std::size_t p = 0; p < kRayCensusBytes; ++p) {
       const auto own_upper = own(p);
@@ -53,7 +50,6 @@ class CodeDistance {
   }
 
   [[nodiscard]] HWY_INLINE VecOf<D8> value() const {
-    namespace hn = hwy::HWY_NAMESPACE;
     return kThresholds == 1 ? ones_ : hn::Add(ones_, hn::Add(twos_, twos_));
   }
 
@@ -65,7 +61,6 @@ class CodeDistance {
 // table[index] for index < kEntries.
 template <int kEntries, class D8>
 HWY_INLINE VecOf<D8> looked_up(D8 d, const std::uint8_t* table, VecOf<D8> index) {
-  namespace hn = hwy::HWY_NAMESPACE;
   // Distances are below 128, and comparing signed bytes is cheaper.
   const hn::RebindToSigned<D8> d8s;
   const auto within = hn::And(index, hn::Set(d, 15));
@@ -82,7 +77,6 @@ HWY_INLINE VecOf<D8> looked_up(D8 d, const std::uint8_t* table, VecOf<D8> index)
 // table.steps[distance]; kEntries: multiple of 16, above table.last.
 template <int kEntries, class D8>
 HWY_INLINE VecOf<D8> looked_up_bytes(D8 d, const ByteByDistance& table, VecOf<D8> distance) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const std::uint8_t* const steps = table.steps.data();
   const auto within = hn::Min(distance, hn::Set(d, static_cast<std::uint8_t>(table.last)));
 #if HWY_TARGET == HWY_AVX3_DL

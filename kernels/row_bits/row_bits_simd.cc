@@ -1,17 +1,13 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/row_bits/row_bits_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "kernels/row_bits/row_bits.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 template <class D, class M>
 HWY_INLINE std::uint64_t bits_of(D d, M mask) {
@@ -69,6 +65,29 @@ void near_bits_row(const float* a, const float* b, float limit, int width, std::
 }
 void zero_bits_row(const std::uint8_t* values, int width, std::uint64_t* bits) {
   HWY_DYNAMIC_DISPATCH(zero_bits)(values, width, bits);
+}
+
+// Scalar reference.
+
+namespace {
+
+template <typename Answer>
+void answer_columns(int width, std::uint64_t* bits, const Answer& answer) {
+  std::fill_n(bits, row_words(width), std::uint64_t{0});
+  for (int x = 0; x < width; ++x) {
+    bits[x / 64] |= std::uint64_t{answer(x) ? 1U : 0U} << (x % 64);
+  }
+}
+
+}  // namespace
+
+void near_bits_row_ref(const float* a, const float* b, float limit, int width,
+                       std::uint64_t* bits) {
+  answer_columns(width, bits, [&](int x) { return std::abs(a[x] - b[x]) <= limit; });
+}
+
+void zero_bits_row_ref(const std::uint8_t* values, int width, std::uint64_t* bits) {
+  answer_columns(width, bits, [&](int x) { return values[x] == 0; });
 }
 
 }  // namespace vantage::kernels

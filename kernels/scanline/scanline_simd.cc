@@ -1,10 +1,7 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/scanline/scanline_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -13,7 +10,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 using Tag = hn::ScalableTag<float>;
 using Vec = hn::VFromD<Tag>;
@@ -97,6 +93,123 @@ HWY_EXPORT(scanline_paths_simd);
 void scanline_winners_row(const CellRow& row, const JumpCost& jump, const ScanlineWork& work,
                           std::int32_t* winners) {
   HWY_DYNAMIC_DISPATCH(scanline_paths_simd)(row, jump, work);
+  trace_scanline_row(row, jump, work, winners);
+}
+
+// Scalar reference.
+
+namespace {
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+
+int first_minimum(const float* paths, CandidateRange candidates) {
+  return static_cast<int>(std::min_element(paths + candidates.begin, paths + candidates.end) -
+                          paths);
+}
+
+/// The candidate of a column that the best path to `candidate` of the next column comes from.
+int predecessor(const float* paths, float min, const JumpCost& jump, int linear_changes, int count,
+                CandidateRange candidates, int candidate) {
+  int best = candidate;
+  float energy = paths[candidate];
+  for (int k = 1; k <= linear_changes; ++k) {
+    const float cost = jump.of(k);
+    if (min + cost >= energy) {
+      return best;  // nor do larger changes pay
+    }
+    for (const int other : {candidate - k, candidate + k}) {
+      if (other >= 0 && other < count && paths[other] + cost < energy) {
+        energy = paths[other] + cost;
+        best = other;
+      }
+    }
+  }
+  return min + jump.limit < energy ? first_minimum(paths, candidates) : best;
+}
+
+}  // namespace
+
+int JumpCost::linear_changes(int count) const {
+  int changes = 0;
+  while (changes < count - 1 && penalty * static_cast<float>(changes + 1) < limit) {
+    ++changes;
+  }
+  return changes;
+}
+
+int JumpCost::passes(int count) const {
+  int passes = 0;
+  while ((1 << passes) - 1 < linear_changes(count)) {
+    ++passes;
+  }
+  return passes;
+}
+
+int scanline_spread_floats(const CandidateGeometry& geometry, const JumpCost& jump) {
+  // Two columns with room on both sides for the longest step of a pass.
+  const int passes = jump.passes(geometry.count);
+  const int reach = passes == 0 ? 0 : 1 << (passes - 1);
+  const int margin = CandidateGeometry{.count = reach}.lanes();
+  return 2 * (geometry.lanes() + 2 * margin);
+}
+
+void trace_scanline_row(const CellRow& row, const JumpCost& jump, const ScanlineWork& work,
+                        std::int32_t* winners) {
+  const int count = row.geometry.count;
+  const int linear_changes = jump.linear_changes(count);
+  int next = kNoWinner;
+  for (int j = row.columns - 1; j >= 0; --j) {
+    const float* paths = work.paths + static_cast<std::ptrdiff_t>(j) * row.geometry.lanes();
+    const CandidateRange candidates = row.candidates(row.first_column + j);
+    if (candidates.empty()) {
+      next = kNoWinner;
+    } else if (next == kNoWinner) {
+      next = first_minimum(paths, candidates);
+    } else {
+      next = predecessor(paths, work.minima[j], jump, linear_changes, count, candidates, next);
+    }
+    winners[j] = next;
+  }
+}
+
+void scanline_winners_row_ref(const CellRow& row, const JumpCost& jump, const ScanlineWork& work,
+                              std::int32_t* winners) {
+  const int lanes = row.geometry.lanes();
+  const int count = row.geometry.count;
+  const int passes = jump.passes(count);
+  float* spread = work.spread;
+  float* next = work.spread + lanes;
+  const float* before = nullptr;  // null: a path starts
+  float min_before = kNever;
+  for (int j = 0; j < row.columns; ++j) {
+    const float* cells = row.cells + static_cast<std::ptrdiff_t>(j) * lanes;
+    float* paths = work.paths + static_cast<std::ptrdiff_t>(j) * lanes;
+    const CandidateRange candidates = row.candidates(row.first_column + j);
+    if (before != nullptr) {
+      std::copy_n(before, lanes, spread);
+    }
+    for (int pass = 0; pass < passes && before != nullptr; ++pass) {
+      const int step = 1 << pass;
+      const float cost = jump.penalty * static_cast<float>(step);
+      for (int i = 0; i < lanes; ++i) {
+        const float below = i >= step ? spread[i - step] : kNever;
+        const float above = i + step < lanes ? spread[i + step] : kNever;
+        next[i] = std::min(spread[i], std::min(below, above) + cost);
+      }
+      std::swap(spread, next);
+    }
+    float min = kNever;
+    for (int i = 0; i < lanes; ++i) {
+      const bool counts = i >= candidates.begin && i < candidates.end;
+      float path =
+          before == nullptr ? 0 : std::min(spread[i], min_before + jump.limit) - min_before;
+      path = counts ? cells[i] + path : kNever;
+      paths[i] = path;
+      min = std::min(min, path);
+    }
+    work.minima[j] = min_before = min;
+    before = candidates.empty() ? nullptr : paths;
+  }
   trace_scanline_row(row, jump, work, winners);
 }
 

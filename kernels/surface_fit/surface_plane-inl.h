@@ -8,29 +8,27 @@
 #define VANTAGE_KERNELS_SURFACE_PLANE_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
+#include "kernels/simd-inl.h"
 #include "kernels/surface_fit/surface_fit.h"
 #include "kernels/surface_fit/surface_plane.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-using SurfaceTag = hwy::HWY_NAMESPACE::ScalableTag<std::int16_t>;
-using SurfaceVec = hwy::HWY_NAMESPACE::VFromD<SurfaceTag>;
-constexpr int kSurfaceStep = static_cast<int>(hwy::HWY_NAMESPACE::MaxLanes(SurfaceTag()));
+using SurfaceTag = hn::ScalableTag<std::int16_t>;
+using SurfaceVec = hn::VFromD<SurfaceTag>;
+constexpr int kSurfaceStep = static_cast<int>(hn::MaxLanes(SurfaceTag()));
 static_assert(kSurfaceStep - 1 <= kSurfaceRowSlack);
 /// A vector of floats holds half as many pixels as one of 16-bit integers.
-using SurfaceTagF = hwy::HWY_NAMESPACE::ScalableTag<float>;
-using SurfaceVecF = hwy::HWY_NAMESPACE::VFromD<SurfaceTagF>;
+using SurfaceTagF = hn::ScalableTag<float>;
+using SurfaceVecF = hn::VFromD<SurfaceTagF>;
 constexpr int kSurfaceStepF = kSurfaceStep / 2;
 
 HWY_INLINE SurfaceVecF load_as_float(const std::int16_t* values) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const SurfaceTagF d;
   const hn::RebindToSigned<SurfaceTagF> d_int;
   return hn::ConvertTo(d, hn::PromoteTo(d_int, hn::LoadU(hn::Half<SurfaceTag>(), values)));
@@ -38,7 +36,6 @@ HWY_INLINE SurfaceVecF load_as_float(const std::int16_t* values) {
 
 /// To nearest integers, halves to even, of values whose integers fit 16 bits.
 HWY_INLINE SurfaceVec to_samples(SurfaceVecF lower, SurfaceVecF upper) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const SurfaceTag d;
   // Sums with this have their integer part in the lowest bits.
   const SurfaceVecF shift = hn::Set(SurfaceTagF(), 0x1.8p23F);
@@ -77,7 +74,6 @@ struct SurfaceSumRow {
   HWY_ALIGN std::int16_t wev[kSize];
 
   HWY_INLINE void store(const SurfaceSumVectors& sums, int x) {
-    namespace hn = hwy::HWY_NAMESPACE;
     const SurfaceTag d;
     hn::Store(sums.w, d, w + x);
     hn::Store(sums.wu, d, wu + x);
@@ -128,7 +124,6 @@ template <int kSteps>
 HWY_INLINE SurfaceSamples weigh_surface_samples(const std::int16_t* samples, SurfaceVec plane,
                                                 const SurfacePlaces<kSteps>& places,
                                                 std::size_t steps2) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const SurfaceTag d;
   const hn::RebindToUnsigned<SurfaceTag> d_unsigned;
   // Saturated at most where the weight is 0. The absolute value of −32768 is right without a sign.
@@ -143,7 +138,6 @@ HWY_INLINE SurfaceSamples weigh_surface_samples(const std::int16_t* samples, Sur
 template <int kSteps>
 HWY_INLINE SurfaceLine sum_surface_line(const std::int16_t* middle, int j, SurfaceVec plane,
                                         SurfaceVec slope_u, const SurfacePlaces<kSteps>& places) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const auto steps2 = [&](int i) { return static_cast<std::size_t>(i * i + j * j); };
   const SurfaceSamples own = weigh_surface_samples(middle, plane, places, steps2(0));
   const SurfaceSamples above =
@@ -175,7 +169,6 @@ HWY_INLINE SurfaceLine sum_surface_line(const std::int16_t* middle, int j, Surfa
 template <int j>
 HWY_INLINE void add_surface_lines(const SurfaceLine& above, const SurfaceLine& below,
                                   SurfaceSumVectors& sums) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const auto times_j = [](SurfaceVec v) HWY_ATTR { return j == 1 ? v : hn::Add(v, v); };
   const SurfaceVec w = hn::Add(above.w, below.w);
   sums.w = hn::Add(sums.w, w);
@@ -194,7 +187,6 @@ HWY_INLINE SurfaceSumVectors sum_surface_samples(const std::int16_t* centres,
                                                  const SurfacePlaces<kSteps>& places,
                                                  SurfaceVec middle, SurfaceVec slope_u,
                                                  SurfaceVec slope_v) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const SurfaceVec zero = hn::Zero(SurfaceTag());
   const SurfaceLine own = sum_surface_line(centres, 0, middle, slope_u, places);
   SurfaceSumVectors sums{own.w, own.wu, zero, own.wuu, zero, zero, own.we, own.weu, zero};
@@ -219,7 +211,6 @@ template <bool kIsFirst, int kSteps>
 HWY_NOINLINE void sum_surface_row(const std::int16_t* centres, int width,
                                   const SurfacePlaces<kSteps>& places, const SurfaceFirstRow* first,
                                   SurfaceSumRow& sums) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const SurfaceTag d;
   const SurfaceVec zero = hn::Zero(d);
   for (int x = 0; x < width; x += kSurfaceStep) {
@@ -237,7 +228,6 @@ HWY_NOINLINE void sum_surface_row(const std::int16_t* centres, int width,
 
 /// Corrections of the planes of kSurfaceStepF pixels, from column x of `sums` on.
 HWY_INLINE SurfacePlanes surface_corrections(const SurfaceSumRow& sums, int x, float ridge) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const SurfaceTagF d;
   const SurfaceVecF w = hn::Max(load_as_float(sums.w + x), hn::Set(d, 1.0F));
   const SurfaceVecF wu = load_as_float(sums.wu + x);
@@ -270,7 +260,6 @@ template <int kSteps>
 HWY_INLINE void fit_first_surface_planes(const std::int16_t* centres, int width,
                                          const SurfacePlaces<kSteps>& places, SurfaceSumRow& sums,
                                          SurfaceFirstRow& planes) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const SurfaceTag d;
   const SurfaceVec limit = hn::Set(d, static_cast<std::int16_t>(places.max_first));
   sum_surface_row<true>(centres, width, places, nullptr, sums);
@@ -302,7 +291,6 @@ class SurfaceRowFit {
   }
   /// The planes of kSurfaceStepF pixels, from column x on.
   [[nodiscard]] HWY_INLINE SurfacePlanes planes(int x) const {
-    namespace hn = hwy::HWY_NAMESPACE;
     const SurfacePlanes above = surface_corrections(sums_, x, places_.ridge);
     return {hn::Sub(load_as_float(first_.height + x), above.height),
             hn::Sub(load_as_float(first_.slope_u + x), above.slope_u),
@@ -318,15 +306,15 @@ class SurfaceRowFit {
 /// Makes disparities of what is in steps of a format, and clamps them.
 struct SurfaceDisparities {
   explicit SurfaceDisparities(const SurfaceRow& row)
-      : middle_px(hwy::HWY_NAMESPACE::Set(SurfaceTagF(), row.format.middle_px)),
-        px_per_unit(hwy::HWY_NAMESPACE::Set(SurfaceTagF(), 1 / row.format.units_per_px())),
-        min_px(hwy::HWY_NAMESPACE::Set(SurfaceTagF(), row.min_px)),
-        max_px(hwy::HWY_NAMESPACE::Set(SurfaceTagF(), row.max_px)) {}
+      : middle_px(hn::Set(SurfaceTagF(), row.format.middle_px)),
+        px_per_unit(hn::Set(SurfaceTagF(), 1 / row.format.units_per_px())),
+        min_px(hn::Set(SurfaceTagF(), row.min_px)),
+        max_px(hn::Set(SurfaceTagF(), row.max_px)) {}
   [[nodiscard]] HWY_INLINE SurfaceVecF px(SurfaceVecF units) const {
-    return hwy::HWY_NAMESPACE::Add(middle_px, hwy::HWY_NAMESPACE::Mul(units, px_per_unit));
+    return hn::Add(middle_px, hn::Mul(units, px_per_unit));
   }
   [[nodiscard]] HWY_INLINE SurfaceVecF clamp(SurfaceVecF px) const {
-    return hwy::HWY_NAMESPACE::Min(hwy::HWY_NAMESPACE::Max(px, min_px), max_px);
+    return hn::Min(hn::Max(px, min_px), max_px);
   }
   SurfaceVecF middle_px, px_per_unit, min_px, max_px;
 };
@@ -334,12 +322,10 @@ struct SurfaceDisparities {
 /// Disparities as they are stored.
 struct SurfaceStorage {
   explicit SurfaceStorage(const SurfaceFormat& format)
-      : middle_px(hwy::HWY_NAMESPACE::Set(SurfaceTagF(), format.middle_px)),
-        units_per_px(hwy::HWY_NAMESPACE::Set(SurfaceTagF(), format.units_per_px())),
-        limit(hwy::HWY_NAMESPACE::Set(SurfaceTagF(),
-                                      static_cast<float>(max_surface_sample(format)))) {}
+      : middle_px(hn::Set(SurfaceTagF(), format.middle_px)),
+        units_per_px(hn::Set(SurfaceTagF(), format.units_per_px())),
+        limit(hn::Set(SurfaceTagF(), static_cast<float>(max_surface_sample(format)))) {}
   [[nodiscard]] HWY_INLINE SurfaceVec stored(SurfaceVecF lower_px, SurfaceVecF upper_px) const {
-    namespace hn = hwy::HWY_NAMESPACE;
     const auto units = [&](SurfaceVecF px) HWY_ATTR {
       const SurfaceVecF unlimited = hn::Mul(hn::Sub(px, middle_px), units_per_px);
       return hn::Max(hn::Min(unlimited, limit), hn::Neg(limit));

@@ -1,8 +1,4 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/view_blend/view_blend_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
 #include <cstring>
 #include <limits>
@@ -21,7 +17,6 @@ int blend_channels(const WarpedPairRow& pair, const BlendWeights& weights, int c
   return blend_row_ref(pair, weights, channels, view);
 }
 #else
-namespace hn = hwy::HWY_NAMESPACE;
 
 // Whether the surface at positions [x, x + lanes) continues on both sides; it counts as continuing
 // at the row's ends. With several lanes, call only where both sides exist.

@@ -1,9 +1,6 @@
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "kernels/window_start/window_start_simd.cc"
-#include <hwy/foreach_target.h>
-// After foreach_target.h, so that it is compiled once per target.
-#include <hwy/highway.h>
+#include "kernels/simd-inl.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -11,7 +8,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
 #if HWY_TARGET == HWY_SCALAR
 void second_winners(const std::array<const std::int16_t*, 3>& winners, int columns,
@@ -115,6 +111,41 @@ void second_winners_row(const std::array<const std::int16_t*, 3>& winners, int c
 }
 void window_start_row(const CoarseEnergies& coarse, WindowCells* support) {
   HWY_DYNAMIC_DISPATCH(start)(coarse, support);
+}
+
+// Scalar reference.
+
+void second_winners_row_ref(const std::array<const std::int16_t*, 3>& winners, int columns,
+                            std::int16_t* second) {
+  for (int x = 0; x < columns; ++x) {
+    const int own = winners[1][x];
+    int min = own;
+    int max = own;
+    for (const std::int16_t* const row : winners) {
+      for (int at = x - 1; at <= x + 1; ++at) {
+        min = std::min<int>(min, row[at]);
+        max = std::max<int>(max, row[at]);
+      }
+    }
+    const int other = own - min >= kOtherSurface   ? min
+                      : max - own >= kOtherSurface ? max
+                                                   : kNoSecondWinner;
+    second[x] = static_cast<std::int16_t>(other);
+  }
+}
+
+void window_start_row_ref(const CoarseEnergies& coarse, WindowCells* support) {
+  for (int x = 0; x < coarse.columns; ++x) {
+    support[x] = 0;
+    for (int k = 0; k < kWindowCandidates; ++k) {
+      const int at = coarse.spacing == 1 ? 2 * k : k + coarse.offset_bits[x] / 8;
+      const int energy = window_cell(coarse.energies[x], at / 2);
+      const int next = at % 2 == 0 ? energy : window_cell(coarse.energies[x], at / 2 + 1);
+      const int steps = ((energy + next + 1) / 2 * coarse.steps) >> 8;
+      support[x] |= static_cast<WindowCells>(std::max(0, coarse.ceiling - steps)) << (8 * k);
+    }
+    support[x] &= coarse.lanes;
+  }
 }
 
 }  // namespace vantage::kernels

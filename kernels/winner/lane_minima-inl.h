@@ -7,11 +7,10 @@
 #define VANTAGE_KERNELS_LANE_MINIMA_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
 #include <cstdint>
 
 #include "kernels/candidates.h"
+#include "kernels/simd-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
@@ -19,7 +18,6 @@ namespace vantage::kernels::HWY_NAMESPACE {
 // first, first + 1, … per lane. Highway's Iota is a constant only for a constant start; otherwise
 // it goes through memory, value by value.
 HWY_INLINE auto lane_numbers(int first) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<std::int32_t> d32;
   return hn::Add(hn::Iota(d32, 0), hn::Set(d32, first));
 }
@@ -29,7 +27,6 @@ HWY_INLINE auto lane_numbers(int first) {
 // into one until lane k of the last vector belongs to column k.
 template <int kColumns>
 HWY_INLINE auto minima_of(const std::int32_t* work) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<std::int32_t> d32;
   if constexpr (kColumns == 1) {
     return hn::LoadU(d32, work);
@@ -44,7 +41,6 @@ HWY_INLINE auto minima_of(const std::int32_t* work) {
 // minima[j] = minimum of the first Lanes(int32) values of work column j; columns are kLaneMultiple
 // values apart.
 HWY_INLINE void reduce_minima(const std::int32_t* work, int columns, std::int32_t* minima) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<std::int32_t> d32;
   int j = 0;
 #if HWY_TARGET != HWY_SCALAR
