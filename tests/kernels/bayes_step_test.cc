@@ -1,19 +1,12 @@
 #include "kernels/bayes_step/bayes_step.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
-#include <random>
-#include <vector>
 
 #include "kernels/candidates.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/star_rows.h"
 
-namespace vantage::kernels {
-namespace bayes_step_test {
+namespace vantage::kernels::bayes_step_test {
 
 using Kernel = void (*)(const BayesRow&);
 
@@ -218,7 +211,6 @@ TEST_P(BayesStep, ProbabilitiesSumToOne) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, BayesStep, testing::ValuesIn(each_target()), target_test_name);
+VANTAGE_EVERY_TARGET_OF(BayesStep);
 
-}  // namespace bayes_step_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::bayes_step_test

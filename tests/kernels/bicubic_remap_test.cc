@@ -1,21 +1,13 @@
 #include "kernels/bicubic_remap/bicubic_remap.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
 #include <type_traits>
-#include <vector>
 
 #include "kernels/pixel_row/pixel_row.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/synthesis_rows.h"
 #include "tests/keys_kernel.h"
 
-namespace vantage::kernels {
-namespace bicubic_remap_test {
+namespace vantage::kernels::bicubic_remap_test {
 
 using test::keys;
 
@@ -195,5 +187,4 @@ TYPED_TEST(BicubicRemap, WholePositionsAreThePixelsThemselves) {
   }
 }
 
-}  // namespace bicubic_remap_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::bicubic_remap_test

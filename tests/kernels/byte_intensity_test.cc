@@ -1,18 +1,9 @@
 #include "kernels/byte_intensity/byte_intensity.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace byte_intensity_test {
+namespace vantage::kernels::byte_intensity_test {
 
-class ByteIntensity : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(ByteIntensity);
 
 TEST_P(ByteIntensity, RoundingEqualsReference) {
@@ -46,5 +37,4 @@ TEST_P(ByteIntensity, HalvingEqualsReference) {
   }
 }
 
-}  // namespace byte_intensity_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::byte_intensity_test

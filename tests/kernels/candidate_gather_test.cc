@@ -9,8 +9,7 @@
 
 #include "kernels/row_resampling/row_resampling.h"
 
-namespace vantage::kernels {
-namespace candidate_gather_test {
+namespace vantage::kernels::candidate_gather_test {
 
 template <typename T>
 class CandidateGather : public ::testing::Test {};
@@ -69,5 +68,4 @@ TEST(RowResampling, IsExactForLinesAndStaysWithinItsPixels) {
   }
 }
 
-}  // namespace candidate_gather_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::candidate_gather_test

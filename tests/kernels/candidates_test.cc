@@ -6,8 +6,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace vantage::kernels {
-namespace candidates_test {
+namespace vantage::kernels::candidates_test {
 
 constexpr double kRounding = 1e-6;
 
@@ -92,5 +91,4 @@ TEST(Candidates, ColumnsWithAllOfSeveralImagesHaveThem) {
   }
 }
 
-}  // namespace candidates_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::candidates_test

@@ -1,20 +1,12 @@
 #include "kernels/cell_smoothing/cell_smoothing.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <random>
 #include <utility>
-#include <vector>
 
 #include "kernels/candidates.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace cell_smoothing_test {
+namespace vantage::kernels::cell_smoothing_test {
 
 constexpr float kSentinel = -12345.5F;
 /// Of the sum of the terms' absolute values: an ulp per operation, fewer than 150 of them.
@@ -121,7 +113,6 @@ TEST(SymmetricSumReference, AddsWeightedRuns) {
   });
 }
 
-class CellSmoothingOn : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(CellSmoothingOn);
 
 TEST_P(CellSmoothingOn, AddsWeightedRunsAsTheReferenceDoes) {
@@ -277,5 +268,4 @@ TEST_P(CellSmoothingOn, StripsOfACascadeAreThoseOfTheWholeRow) {
   });
 }
 
-}  // namespace cell_smoothing_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::cell_smoothing_test

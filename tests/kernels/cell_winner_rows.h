@@ -1,9 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <limits>
-#include <random>
-
 #include "kernels/cell_winner/cell_winner.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/winner_rows.h"

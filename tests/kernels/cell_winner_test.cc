@@ -1,21 +1,10 @@
 #include "kernels/cell_winner/cell_winner.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/cell_winner_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/winner_rows.h"
 
-namespace vantage::kernels {
-namespace cell_winner_test {
+namespace vantage::kernels::cell_winner_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr float kFloatSentinel = -12345.5F;
@@ -170,7 +159,6 @@ TEST(CellRowHelpers, PlainColumnsAreThoseWhereEveryCandidateCounts) {
   });
 }
 
-class CellWinner : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(CellWinner);
 
 TEST_P(CellWinner, FollowsTheDefinitions) { sweep(select_cell_winners_row); }
@@ -265,5 +253,4 @@ TEST_P(CellWinner, EnergyOfAProbabilityIsItsNegativeLogarithm) {
   }
 }
 
-}  // namespace cell_winner_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::cell_winner_test

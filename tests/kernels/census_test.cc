@@ -1,21 +1,13 @@
 #include "kernels/census/census.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <random>
-#include <vector>
 
 #include "kernels/candidates.h"
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace census_test {
+namespace vantage::kernels::census_test {
 
-class Census : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(Census);
 
 /// Seven rows of few grey levels, so that many neighbours are equal.
@@ -206,5 +198,4 @@ TEST_P(Census, RayCodesOfBytesEqualThoseOfFloats) {
   }
 }
 
-}  // namespace census_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::census_test

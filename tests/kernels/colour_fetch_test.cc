@@ -1,18 +1,10 @@
 #include "kernels/colour_fetch/colour_fetch.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <random>
-#include <vector>
-
 #include "kernels/forward_warp/forward_warp.h"
 #include "tests/kernels/synthesis_rows.h"
 #include "tests/keys_kernel.h"
 
-namespace vantage::kernels {
-namespace colour_fetch_test {
+namespace vantage::kernels::colour_fetch_test {
 
 using test::keys;
 
@@ -178,5 +170,4 @@ TEST(FetchForward, SourcePixelsAndLinearGaps) {
   }
 }
 
-}  // namespace colour_fetch_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::colour_fetch_test

@@ -1,18 +1,9 @@
 #include "kernels/colour_order/colour_order.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace colour_order_test {
+namespace vantage::kernels::colour_order_test {
 
-class ColourOrder : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(ColourOrder);
 
 template <typename T>
@@ -42,5 +33,4 @@ TEST_P(ColourOrder, IsTheDefinitionIn8Bits) { expect_the_definition<std::uint8_t
 TEST_P(ColourOrder, IsTheDefinitionIn16Bits) { expect_the_definition<std::uint16_t>(); }
 TEST_P(ColourOrder, IsTheDefinitionInFloats) { expect_the_definition<float>(); }
 
-}  // namespace colour_order_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::colour_order_test

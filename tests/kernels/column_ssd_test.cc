@@ -1,19 +1,9 @@
 #include "kernels/column_ssd/column_ssd.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "kernels/candidates.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace column_ssd_test {
+namespace vantage::kernels::column_ssd_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr int kMaxShift = 6;
@@ -232,7 +222,6 @@ void sweep_floats(const Kernel& kernel) {
 TEST(ColumnSsdReference, PairsAreSumsOfSquaredDifferences) { sweep_pairs(kReferenceKernel); }
 TEST(ColumnSsdReference, FloatsAreSumsOfRoundedSquares) { sweep_floats(kReferenceKernel); }
 
-class ColumnSsd : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(ColumnSsd);
 
 TEST_P(ColumnSsd, PairsAreSumsOfSquaredDifferences) { sweep_pairs(kPairsKernel); }
@@ -270,5 +259,4 @@ TEST_P(ColumnSsd, InterleavesRows) {
   }
 }
 
-}  // namespace column_ssd_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::column_ssd_test

@@ -1,18 +1,10 @@
 #include "kernels/column_sum/column_sum.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
 #include <utility>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace column_sum_test {
+namespace vantage::kernels::column_sum_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr int kCounts[] = {16, 32, 48, 64, 80, 144, 272};
@@ -79,10 +71,8 @@ void sweep(const Kernel& kernel) {
 
 TEST(ColumnSumReference, MovesSumsByOneRow) { sweep(column_sum_row_ref); }
 
-class ColumnSumOn : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(ColumnSumOn);
 
 TEST_P(ColumnSumOn, MovesSumsByOneRow) { sweep(column_sum_row); }
 
-}  // namespace column_sum_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::column_sum_test

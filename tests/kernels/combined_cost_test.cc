@@ -1,21 +1,12 @@
 #include "kernels/combined_cost/combined_cost.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace combined_cost_test {
+namespace vantage::kernels::combined_cost_test {
 
-class CombinedCost : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(CombinedCost);
 
 struct Case {
@@ -194,5 +185,4 @@ TEST(CombinedModel, StepsAreFineAndReachToWhereOnlyOutliersAre) {
   }
 }
 
-}  // namespace combined_cost_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::combined_cost_test

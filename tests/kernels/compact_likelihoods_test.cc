@@ -1,18 +1,10 @@
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <iterator>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace compact_likelihoods_test {
+namespace vantage::kernels::compact_likelihoods_test {
 
 struct Shape {
   int columns;
@@ -57,8 +49,6 @@ std::vector<double> plain_energies(const Shape& shape, const std::vector<float>&
   }
   return energies;
 }
-
-class CompactLikelihoods : public EveryTarget {};
 
 constexpr float kWeights[] = {1, 0.6F, 0.015F};
 
@@ -259,5 +249,4 @@ TEST_P(CompactLikelihoods, ProbabilitiesSurviveToHalfAStep) {
 
 VANTAGE_ON_EVERY_TARGET(CompactLikelihoods);
 
-}  // namespace compact_likelihoods_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::compact_likelihoods_test

@@ -1,20 +1,11 @@
 #include "kernels/cross_check/cross_check.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <optional>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace cross_check_test {
+namespace vantage::kernels::cross_check_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint8_t kSentinel = 77;
@@ -60,7 +51,6 @@ std::vector<std::uint8_t> checked(const std::vector<float>& own, const std::vect
   return unmatched.values();
 }
 
-class CrossCheck : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(CrossCheck);
 
 TEST_P(CrossCheck, EqualsPlainTranscription) {
@@ -175,5 +165,4 @@ TEST_P(CrossCheck, WinnersOfACoarseLevelAreRepeated) {
   }
 }
 
-}  // namespace cross_check_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::cross_check_test

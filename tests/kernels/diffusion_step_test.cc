@@ -1,14 +1,11 @@
 #include "kernels/diffusion_step/diffusion_step.h"
 
-#include <gtest/gtest.h>
-
 #include <utility>
 
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/star_rows.h"
 
-namespace vantage::kernels {
-namespace diffusion_step_test {
+namespace vantage::kernels::diffusion_step_test {
 
 class DiffusionStep : public EveryTarget {};
 
@@ -64,8 +61,6 @@ TEST_P(DiffusionStep, PullsEachColumnTowardsItsNeighboursByTheirWeights) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, DiffusionStep, testing::ValuesIn(each_target()),
-                         target_test_name);
+VANTAGE_EVERY_TARGET_OF(DiffusionStep);
 
-}  // namespace diffusion_step_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::diffusion_step_test

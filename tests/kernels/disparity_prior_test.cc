@@ -1,18 +1,8 @@
 #include "kernels/disparity_prior/disparity_prior.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace disparity_prior_test {
+namespace vantage::kernels::disparity_prior_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -118,7 +108,6 @@ TEST(DisparityPriorReference, FollowsTheDefinitions) {
   expect_definition(likelihoods_with_prior_row_ref, true, likelihood);
 }
 
-class DisparityPrior : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(DisparityPrior);
 
 TEST_P(DisparityPrior, FollowsTheDefinitions) {
@@ -186,5 +175,4 @@ TEST_P(DisparityPrior, KeepsTheVertexOfAParabola) {
   }
 }
 
-}  // namespace disparity_prior_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::disparity_prior_test

@@ -11,8 +11,7 @@
 #include <random>
 #include <vector>
 
-namespace vantage::kernels {
-namespace edge_snapping_test {
+namespace vantage::kernels::edge_snapping_test {
 
 using Row = std::vector<float>;
 using Edges = std::vector<std::uint8_t>;
@@ -155,5 +154,4 @@ TEST(EdgeSnapping, EqualsPlainTranscription) {
   }
 }
 
-}  // namespace edge_snapping_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::edge_snapping_test

@@ -1,19 +1,9 @@
 #include "kernels/edge_weights/edge_weights.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace edge_weights_test {
+namespace vantage::kernels::edge_weights_test {
 
-class EdgeWeightsRow : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(EdgeWeightsRow);
 
 TEST_P(EdgeWeightsRow, FallWithTheDifferenceOfGreyLevels) {
@@ -78,5 +68,4 @@ TEST_P(EdgeWeightsRow, EqualPixelsCountInFull) {
   EXPECT_EQ(weights, std::vector<float>(20, 1.0F));
 }
 
-}  // namespace edge_weights_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::edge_weights_test

@@ -1,20 +1,10 @@
 #include "kernels/energy_winner/energy_winner.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
-
 #include "engine/image/image.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/winner_rows.h"
 
-namespace vantage::kernels {
-namespace energy_winner_test {
+namespace vantage::kernels::energy_winner_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr FixedEnergy kEnergySentinel = -77;
@@ -161,8 +151,6 @@ void sweep(Select select) {
   EXPECT_GT(columns_with_all, 1000);
 }
 
-class EnergyWinner : public EveryTarget {};
-
 TEST_P(EnergyWinner, IsTheFirstOfTheLeastWithAPartner) { sweep(select_energy_winners_row); }
 TEST(EnergyWinnerReference, IsTheFirstOfTheLeastWithAPartner) {
   sweep(select_energy_winners_row_ref);
@@ -263,8 +251,6 @@ TEST(EnergyDisparity, OfAParabolaIsItsLowestPoint) {
   EXPECT_EQ(disparity_px, 10.25F);
 }
 
-class EnergyProbability : public EveryTarget {};
-
 TEST_P(EnergyProbability, IsTheShareOfTheWinnersLikelihood) {
   std::mt19937 random(65);
   for (const int lanes : kLaneCounts) {
@@ -338,5 +324,4 @@ TEST(EnergyProbabilityOnAllTargets, IsIdentical) {
 VANTAGE_ON_EVERY_TARGET(EnergyWinner);
 VANTAGE_ON_EVERY_TARGET(EnergyProbability);
 
-}  // namespace energy_winner_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::energy_winner_test

@@ -1,17 +1,9 @@
 #include "kernels/evidence_sum/evidence_sum.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-
 #include "tests/kernels/evidence_norms.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace evidence_sum_test {
+namespace vantage::kernels::evidence_sum_test {
 
 /// Random gradients; NaN where rows are read but not counted.
 struct RandomGradients {
@@ -67,7 +59,6 @@ double plain_sum(const EvidenceBlock& block) {
 constexpr int kColumnCounts[] = {0, 1, 2, 15, 16, 17, 31, 32, 33, 61, 64, 67, 128};
 constexpr int kRowCounts[] = {0, 1, 2, 16};
 
-class EvidenceSumTest : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(EvidenceSumTest);
 
 TEST_P(EvidenceSumTest, EqualsTheReferenceBitForBit) {
@@ -110,5 +101,4 @@ TEST(EvidenceSum, EqualGradientsSupportWithTheirNorm) {
   EXPECT_NEAR(evidence_sum({gradients.block(), gradients.block(), 77, 3}), norms, 1e-2);
 }
 
-}  // namespace evidence_sum_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::evidence_sum_test

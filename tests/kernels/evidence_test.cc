@@ -1,21 +1,11 @@
 #include "kernels/evidence/evidence.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/evidence_norms.h"
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace evidence_test {
+namespace vantage::kernels::evidence_test {
 
-class Evidence : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(Evidence);
 
 float draw_component(std::mt19937& random) {
@@ -153,5 +143,4 @@ TEST_P(Evidence, Likelihood) {
   }
 }
 
-}  // namespace evidence_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::evidence_test

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <random>
-#include <vector>
-
 #include "kernels/feature_pairs.h"
 #include "tests/kernels/kernel_test_utils.h"
 

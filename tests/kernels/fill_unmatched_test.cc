@@ -1,19 +1,11 @@
 #include "kernels/fill_unmatched/fill_unmatched.h"
 
-#include <gtest/gtest.h>
-
 #include <bit>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <optional>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace fill_unmatched_test {
+namespace vantage::kernels::fill_unmatched_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -129,5 +121,4 @@ TEST(FillUnmatchedLinearly, InterpolatesWhereBothSidesAreOneSurface) {
   EXPECT_EQ(row, (Row{1, 2}));
 }
 
-}  // namespace fill_unmatched_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::fill_unmatched_test

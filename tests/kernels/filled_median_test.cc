@@ -1,22 +1,12 @@
 #include "kernels/filled_median/filled_median.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
 #include <map>
-#include <random>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace filled_median_test {
+namespace vantage::kernels::filled_median_test {
 
 constexpr std::size_t kColours = 3;
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
@@ -160,7 +150,6 @@ constexpr std::pair<int, int> kSizes[] = {{1, 1},   {1, 37},  {53, 1},  {2, 3},
                                           {4, 5},   {5, 4},   {13, 13}, {16, 11},
                                           {17, 12}, {31, 29}, {67, 41}, {101, 7}};
 
-class FilledMedian : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(FilledMedian);
 
 TEST_P(FilledMedian, EqualsPlainTranscription) {
@@ -285,5 +274,4 @@ TEST_P(FilledMedian, KeepsPixelsThatNothingIsKnownAround) {
   }
 }
 
-}  // namespace filled_median_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::filled_median_test

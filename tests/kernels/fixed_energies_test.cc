@@ -1,20 +1,9 @@
 #include "kernels/fixed_energies/fixed_energies.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "kernels/candidates.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace fixed_energies_test {
+namespace vantage::kernels::fixed_energies_test {
 
 constexpr FixedEnergy kSentinel = -77;
 
@@ -47,8 +36,6 @@ TEST(FixedEnergy, WeightsAreRoundedAndBelowOne) {
   EXPECT_EQ(saturated_sum(30000, 2000), 32000);
   EXPECT_EQ(saturated_sum(30000, 3000), kMaxEnergy);
 }
-
-class FixedEnergies : public EveryTarget {};
 
 TEST_P(FixedEnergies, OfBytesEqualReference) {
   for (const Shape& shape : kShapes) {
@@ -226,5 +213,4 @@ TEST_P(FixedEnergies, OfVanishingLikelihoodsAreThatOfTheLeast) {
 
 VANTAGE_ON_EVERY_TARGET(FixedEnergies);
 
-}  // namespace fixed_energies_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::fixed_energies_test

@@ -1,20 +1,10 @@
 #include "kernels/flicker_sums/flicker_sums.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace flicker_sums_test {
+namespace vantage::kernels::flicker_sums_test {
 
 constexpr int kWidths[] = {1, 2, 3, 15, 16, 17, 64, 65, 1023, 1024, 1025, 20000};
 
@@ -34,7 +24,6 @@ std::vector<std::uint8_t> random_mask(std::mt19937& random, int width) {
   return mask;
 }
 
-class FlickerSumsKernel : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(FlickerSumsKernel);
 
 TEST_P(FlickerSumsKernel, DisparityChange) {
@@ -120,5 +109,4 @@ TEST_P(FlickerSumsKernel, IntensityChangeAndSum) {
   }
 }
 
-}  // namespace flicker_sums_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::flicker_sums_test

@@ -1,17 +1,8 @@
 #include "kernels/forward_warp/forward_warp.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace forward_warp_test {
+namespace vantage::kernels::forward_warp_test {
 
 constexpr double kOffsets[] = {-2.5, -1.0, -0.75, -0.5, -0.3, 0.0, 0.1, 0.25, 0.5, 1.0, 1.75, 4.0};
 
@@ -189,5 +180,4 @@ TEST(ForwardWarp, NothingToWarp) {
   EXPECT_NEAR(wide.disparity_px[0], 0.0F, 100.0F);
 }
 
-}  // namespace forward_warp_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::forward_warp_test

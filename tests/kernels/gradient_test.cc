@@ -1,16 +1,9 @@
 #include "kernels/gradient/gradient.h"
 
-#include <gtest/gtest.h>
-
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace gradient_test {
+namespace vantage::kernels::gradient_test {
 
-class Gradient : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(Gradient);
 
 constexpr FilterTaps kFilters[] = {{0, 0, 1, 0, 0},
@@ -61,5 +54,4 @@ TEST_P(Gradient, SeparableFilter) {
   }
 }
 
-}  // namespace gradient_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::gradient_test

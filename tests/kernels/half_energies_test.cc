@@ -1,18 +1,8 @@
 #include "kernels/half_energies/half_energies.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace half_energies_test {
+namespace vantage::kernels::half_energies_test {
 
 /// What the bits of a half float mean (IEEE 754 binary16).
 double plain_value(std::uint16_t half) {
@@ -67,8 +57,6 @@ TEST(HalfFloat, CutsWhatIsTooLarge) {
   EXPECT_EQ(of_half(to_half(1e9F)), kLargestHalf);
   EXPECT_EQ(of_half(to_half(-std::numeric_limits<float>::infinity())), -kLargestHalf);
 }
-
-class HalfEnergies : public EveryTarget {};
 
 TEST_P(HalfEnergies, ConvertLikeTheReference) {
   std::mt19937 random(1);
@@ -203,5 +191,4 @@ TEST_P(HalfEnergies, GoToTheColumnsOfTheirBlock) {
 
 VANTAGE_ON_EVERY_TARGET(HalfEnergies);
 
-}  // namespace half_energies_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::half_energies_test

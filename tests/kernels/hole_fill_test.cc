@@ -1,18 +1,8 @@
 #include "kernels/hole_fill/hole_fill.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace hole_fill_test {
+namespace vantage::kernels::hole_fill_test {
 
 // One letter per pixel; disparities as digits, '.' = hole.
 std::string fill(std::string pixels, const std::string& disparities, bool mirror = true,
@@ -149,5 +139,4 @@ TEST(HoleFill, EqualsPlainDefinitionOnRandomRows) {
   }
 }
 
-}  // namespace hole_fill_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::hole_fill_test

@@ -1,18 +1,8 @@
 #include "kernels/integer_disparity/integer_disparity.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace integer_disparity_test {
+namespace vantage::kernels::integer_disparity_test {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -64,5 +54,4 @@ TEST(IntegerDisparity, EqualOnEveryInstructionSetAndToReference) {
   }
 }
 
-}  // namespace integer_disparity_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::integer_disparity_test

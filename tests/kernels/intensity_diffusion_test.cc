@@ -1,17 +1,9 @@
 #include "kernels/intensity_diffusion/intensity_diffusion.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace intensity_diffusion_test {
+namespace vantage::kernels::intensity_diffusion_test {
 
-class IntensityDiffusion : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(IntensityDiffusion);
 
 std::vector<float> step(const std::vector<float>& centre, const float* up, const float* down) {
@@ -69,5 +61,4 @@ TEST_P(IntensityDiffusion, LittleTextureFadesAndStrongEdgesStay) {
   EXPECT_NEAR(row[20] - row[19], 100, 0.5F);
 }
 
-}  // namespace intensity_diffusion_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::intensity_diffusion_test

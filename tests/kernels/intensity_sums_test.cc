@@ -1,17 +1,8 @@
 #include "kernels/intensity_sums/intensity_sums.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace intensity_sums_test {
+namespace vantage::kernels::intensity_sums_test {
 
 TEST(IntensitySums, CountOnlyWhatBothShow) {
   std::mt19937 random(10);
@@ -70,5 +61,4 @@ TEST(IntensitySums, EqualOnEveryInstructionSetAndToReference) {
   }
 }
 
-}  // namespace intensity_sums_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::intensity_sums_test

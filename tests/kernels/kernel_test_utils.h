@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -23,6 +25,17 @@ inline std::vector<long long> each_target() {
     }
   }
   return targets;
+}
+
+/// Calls body() once on each instruction set of this machine.
+template <typename Body>
+void for_each_target(const Body& body) {
+  for (const long long target : each_target()) {
+    SCOPED_TRACE(target_name(target));
+    force_target(target);
+    body();
+  }
+  force_target(0);
 }
 
 /// Runs a test on one instruction set and proves that it stayed on it.
@@ -90,6 +103,17 @@ class GuardedRow {
   T sentinel_;
 };
 
+/// What `write(T* row)` leaves in a row of `size` values, which begins at any address. Nothing but
+/// the row may change.
+template <typename T, typename Write>
+std::vector<T> written(std::size_t size, T sentinel, const Write& write) {
+  static std::mt19937 random(77);
+  GuardedRow<T> row(size, random() % 5, sentinel);
+  write(row.data());
+  EXPECT_TRUE(row.intact()) << "wrote beyond a row of " << size;
+  return row.values();
+}
+
 /// Lane counts below, at and beyond the blocks of vectors that kernels work in.
 inline constexpr int kLaneCounts[] = {16, 32, 48, 64, 80, 256};
 
@@ -105,7 +129,12 @@ inline int random_int(std::mt19937& random, int min, int max) {
 
 }  // namespace vantage::kernels
 
-/// Runs the tests of `suite`, a fixture derived from EveryTarget, on every instruction set.
-#define VANTAGE_ON_EVERY_TARGET(suite)                                                             \
+/// A suite of tests that run on every instruction set.
+#define VANTAGE_ON_EVERY_TARGET(suite)                     \
+  class suite : public ::vantage::kernels::EveryTarget {}; \
+  VANTAGE_EVERY_TARGET_OF(suite)
+
+/// The same with a fixture of its own, which is derived from EveryTarget.
+#define VANTAGE_EVERY_TARGET_OF(suite)                                                             \
   INSTANTIATE_TEST_SUITE_P(Targets, suite, ::testing::ValuesIn(::vantage::kernels::each_target()), \
                            ::vantage::kernels::target_test_name)

@@ -1,15 +1,8 @@
 #include "kernels/known_range/known_range.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace known_range_test {
+namespace vantage::kernels::known_range_test {
 
 TEST(KnownRange, LeastAndMostOfWhatIsKnown) {
   std::mt19937 random(1);
@@ -48,5 +41,4 @@ TEST(KnownRange, NothingIsKnown) {
   EXPECT_GT(range.min, range.max);
 }
 
-}  // namespace known_range_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::known_range_test

@@ -1,16 +1,10 @@
 #include "kernels/local_stopping_step/local_stopping_step.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "kernels/candidates.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/star_rows.h"
 
-namespace vantage::kernels {
-namespace local_stopping_step_test {
+namespace vantage::kernels::local_stopping_step_test {
 
 class LocalStoppingStep : public EveryTarget {
  protected:
@@ -91,8 +85,6 @@ TEST_P(LocalStoppingStep, EntropyOfSureColumnsEqualsReference) {
   compare(CertaintyMeasure::kEntropy, false, true, true, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, LocalStoppingStep, testing::ValuesIn(each_target()),
-                         target_test_name);
+VANTAGE_EVERY_TARGET_OF(LocalStoppingStep);
 
-}  // namespace local_stopping_step_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::local_stopping_step_test

@@ -1,21 +1,11 @@
 #include "kernels/luma_intensity/luma_intensity.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <iterator>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace luma_intensity_test {
+namespace vantage::kernels::luma_intensity_test {
 
-class LumaIntensity : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(LumaIntensity);
 
 TEST_P(LumaIntensity, AreTheRoundedLuma) {
@@ -76,5 +66,4 @@ TEST_P(LumaIntensity, BlackAndWhiteStayThemselves) {
   EXPECT_EQ(std::count(std::begin(levels), std::end(levels), 0), 64);
 }
 
-}  // namespace luma_intensity_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::luma_intensity_test

@@ -1,17 +1,8 @@
 #include "kernels/machine_ceiling/machine_ceiling.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace machine_ceiling_test {
-
-class MachineCeiling : public EveryTarget {};
+namespace vantage::kernels::machine_ceiling_test {
 
 TEST_P(MachineCeiling, TriadAndLoadsDoWhatTheyAreCountedAs) {
   for (const std::size_t count : {0UL, 1UL, 7UL, 64UL, 131UL, 1000UL}) {
@@ -46,5 +37,4 @@ TEST_P(MachineCeiling, ArithmeticIsInProportionToRoundsAndIsDone) {
 
 VANTAGE_ON_EVERY_TARGET(MachineCeiling);
 
-}  // namespace machine_ceiling_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::machine_ceiling_test

@@ -1,20 +1,11 @@
 #include "kernels/map_enlargement/map_enlargement.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
-#include <limits>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace map_enlargement_test {
+namespace vantage::kernels::map_enlargement_test {
 
-class MapEnlargement : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(MapEnlargement);
 
 TEST_P(MapEnlargement, EqualsReference) {
@@ -63,5 +54,4 @@ TEST_P(MapEnlargement, IsLinearOnASurfaceAndFollowsIntensitiesAtAJump) {
   }
 }
 
-}  // namespace map_enlargement_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::map_enlargement_test

@@ -1,15 +1,8 @@
 #include "kernels/max_product_step/max_product_step.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
 #include <iterator>
 #include <ostream>
-#include <random>
-#include <vector>
 
 #include "engine/image/image.h"
 #include "kernels/candidates.h"
@@ -17,8 +10,7 @@
 #include "tests/kernels/star_rows.h"
 #include "tests/test_sample.h"
 
-namespace vantage::kernels {
-namespace max_product_step_test {
+namespace vantage::kernels::max_product_step_test {
 
 using EnergyStarRows = CellStarRows<FixedEnergy>;
 using Kernel = void (*)(const MaxProductRow&);
@@ -257,8 +249,6 @@ std::vector<double> plain_smoothed(const std::vector<double>& energies, const Ma
   return smoothed;
 }
 
-class MaxProductStep : public EveryTarget {};
-
 TEST_P(MaxProductStep, EqualsReference) {
   for_each_case([](const Case& c) {
     const MadeUpRow made_up(c);
@@ -460,5 +450,4 @@ TEST(MaxProductWork, HoldsColumnsAndTheirMargins) {
 
 VANTAGE_ON_EVERY_TARGET(MaxProductStep);
 
-}  // namespace max_product_step_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::max_product_step_test

@@ -1,17 +1,9 @@
 #include "kernels/mean_energy/mean_energy.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/winner_rows.h"
 
-namespace vantage::kernels {
-namespace mean_energy_test {
+namespace vantage::kernels::mean_energy_test {
 
 constexpr float kSentinel = -12345.5F;
 
@@ -56,7 +48,6 @@ void sweep(Kernel kernel) {
 
 TEST(MeanEnergyReference, IsTheMeanOverSamplesInsideBothImages) { sweep(mean_energy_row_ref); }
 
-class MeanEnergy : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(MeanEnergy);
 
 TEST_P(MeanEnergy, IsTheMeanOverSamplesInsideBothImages) { sweep(mean_energy_row); }
@@ -92,5 +83,4 @@ TEST_P(MeanEnergy, EqualsTheReferenceAndThatOfAWinnerAlone) {
   });
 }
 
-}  // namespace mean_energy_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::mean_energy_test

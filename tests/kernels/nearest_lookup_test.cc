@@ -5,8 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace vantage::kernels {
-namespace nearest_lookup_test {
+namespace vantage::kernels::nearest_lookup_test {
 
 TEST(NearestLookup, TakesTheValueAtEachPlaceAndNothingElsewhere) {
   constexpr int kWidth = 5;
@@ -34,5 +33,4 @@ TEST(NearestLookup, PlacesOfTheLargestImagesAreNoHoles) {
   EXPECT_EQ(pixel_place(65499, 65498) >> 16U, 65498U);
 }
 
-}  // namespace nearest_lookup_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::nearest_lookup_test

@@ -1,19 +1,9 @@
 #include "kernels/pair_reduction/pair_reduction.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace pair_reduction_test {
+namespace vantage::kernels::pair_reduction_test {
 
 constexpr std::uint8_t kWithoutPartner = 31;
 
@@ -63,7 +53,6 @@ struct Functions {
   decltype(&reduce_right_row) right_row;
 };
 
-class PairReduction : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(PairReduction);
 
 TEST_P(PairReduction, EqualsThatOfEachImage) {
@@ -121,5 +110,4 @@ TEST_P(PairReduction, EqualsThatOfEachImage) {
   }
 }
 
-}  // namespace pair_reduction_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::pair_reduction_test

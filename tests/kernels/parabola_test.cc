@@ -1,20 +1,10 @@
 #include "kernels/parabola/parabola.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/cell_winner_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/winner_rows.h"
 
-namespace vantage::kernels {
-namespace parabola_test {
+namespace vantage::kernels::parabola_test {
 
 constexpr float kSentinel = -12345.5F;
 
@@ -164,7 +154,6 @@ TEST(ParabolaReference, MovesToTheLowestPointOfFloatCells) {
   sweep(CellKernel{parabola_disparity_row_ref});
 }
 
-class Parabola : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(Parabola);
 
 TEST_P(Parabola, MovesToTheLowestPointOfMeanEnergies) { sweep(SumKernel{parabola_disparity_row}); }
@@ -236,5 +225,4 @@ TEST_P(Parabola, MovesHalfAPixelAtMostAtAMinimum) {
   EXPECT_EQ(refine(max, 0, max), 3.0F);
 }
 
-}  // namespace parabola_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::parabola_test

@@ -1,18 +1,9 @@
 #include "kernels/partner_choice/partner_choice.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace partner_choice_test {
+namespace vantage::kernels::partner_choice_test {
 
-class PartnerChoice : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(PartnerChoice);
 
 TEST_P(PartnerChoice, IsTheMeanOfTheBetterHalfThatSeesTheCandidate) {
@@ -80,5 +71,4 @@ TEST_P(PartnerChoice, IsTheMeanOfTheBetterHalfThatSeesTheCandidate) {
   }
 }
 
-}  // namespace partner_choice_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::partner_choice_test

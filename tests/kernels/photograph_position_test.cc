@@ -1,19 +1,9 @@
 #include "kernels/photograph_position/photograph_position.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace photograph_position_test {
+namespace vantage::kernels::photograph_position_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr int kSizes[][2] = {{1, 1}, {2, 1}, {1, 7}, {2, 2}, {13, 5}, {37, 29}};
@@ -148,8 +138,6 @@ TEST(PhotographPosition, WhatTheCameraDoesNotSeeIsNowhere) {
   }
 }
 
-class PhotographPositionTargets : public EveryTarget {};
-
 TEST_P(PhotographPositionTargets, EqualsTheReference) {
   std::mt19937 random(3);
   const auto value = [&](int size) {
@@ -184,5 +172,4 @@ TEST_P(PhotographPositionTargets, EqualsTheReference) {
 
 VANTAGE_ON_EVERY_TARGET(PhotographPositionTargets);
 
-}  // namespace photograph_position_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::photograph_position_test

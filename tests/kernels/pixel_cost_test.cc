@@ -1,22 +1,12 @@
 #include "kernels/pixel_cost/pixel_cost.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "kernels/candidates.h"
 #include "kernels/cells/exp_log.h"
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace pixel_cost_test {
+namespace vantage::kernels::pixel_cost_test {
 
-class PixelCost : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(PixelCost);
 
 /// Grey levels with fractions; equal pairs and extremes are frequent.
@@ -265,5 +255,4 @@ TEST(ExpLog, Logarithm) {
   }
 }
 
-}  // namespace pixel_cost_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::pixel_cost_test

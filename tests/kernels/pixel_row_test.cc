@@ -1,16 +1,8 @@
 #include "kernels/pixel_row/pixel_row.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace pixel_row_test {
+namespace vantage::kernels::pixel_row_test {
 
 template <typename T>
 class PixelRow : public testing::Test {};
@@ -47,5 +39,4 @@ TYPED_TEST(PixelRow, WidensPixelsAndClearsTheRest) {
   }
 }
 
-}  // namespace pixel_row_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::pixel_row_test

@@ -1,12 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "kernels/source_position/source_position.h"
 #include "kernels/surface_splat/surface_splat.h"
 #include "kernels/view_projection/view_projection.h"

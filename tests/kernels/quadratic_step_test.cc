@@ -1,17 +1,10 @@
 #include "kernels/bayes_step/quadratic_step.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "kernels/candidates.h"
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/star_rows.h"
 
-namespace vantage::kernels {
-namespace quadratic_step_test {
+namespace vantage::kernels::quadratic_step_test {
 
 using Kernel = void (*)(const QuadraticStepRow&);
 
@@ -139,8 +132,6 @@ TEST(QuadraticStepTargets, HaveTheSameBits) {
   force_target(0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, QuadraticStep, testing::ValuesIn(each_target()),
-                         target_test_name);
+VANTAGE_EVERY_TARGET_OF(QuadraticStep);
 
-}  // namespace quadratic_step_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::quadratic_step_test

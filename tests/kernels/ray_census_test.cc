@@ -1,22 +1,12 @@
 #include "kernels/ray_census/ray_census.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/feature_rows.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace ray_census_test {
+namespace vantage::kernels::ray_census_test {
 
-class RayCensus : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(RayCensus);
 
 std::uint8_t draw(std::mt19937& random) {
@@ -153,5 +143,4 @@ TEST_P(RayCensus, EnergiesAreTheTables) {
   }
 }
 
-}  // namespace ray_census_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::ray_census_test

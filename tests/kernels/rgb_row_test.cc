@@ -1,21 +1,9 @@
 #include "kernels/rgb_row/rgb_row.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace rgb_row_test {
+namespace vantage::kernels::rgb_row_test {
 
-class RgbRow : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(RgbRow);
 
 /// BT.601 in limited range.
@@ -71,5 +59,4 @@ void expect_the_definition() {
 TEST_P(RgbRow, IsTheDefinitionIn8Bits) { expect_the_definition<std::uint8_t>(); }
 TEST_P(RgbRow, IsTheDefinitionIn16Bits) { expect_the_definition<std::uint16_t>(); }
 
-}  // namespace rgb_row_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::rgb_row_test

@@ -1,21 +1,12 @@
 #include "kernels/row_bits/row_bits.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace row_bits_test {
+namespace vantage::kernels::row_bits_test {
 
 using Bits = std::vector<std::uint64_t>;
 constexpr std::uint64_t kSentinel = 0xA5A5A5A5A5A5A5A5U;
 
-class RowBits : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(RowBits);
 
 /// The bits of `answers`, one word after the other.
@@ -87,5 +78,4 @@ TEST_P(RowBits, ZeroIsNothingElse) {
   }
 }
 
-}  // namespace row_bits_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::row_bits_test

@@ -1,18 +1,9 @@
 #include "kernels/row_sum/row_sum.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
-
 #include "kernels/candidates.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace row_sum_test {
+namespace vantage::kernels::row_sum_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr int kWidths[] = {1, 2, 3, 5, 7, 8, 13, 16, 17, 31, 40};
@@ -141,7 +132,6 @@ void sweep(void (*kernel)(const RowSum&)) {
 
 TEST(RowSumReference, SumsWindowsCutToTheImage) { sweep(row_sum_ref); }
 
-class RowSumOn : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(RowSumOn);
 
 TEST_P(RowSumOn, SumsWindowsCutToTheImage) { sweep(row_sum); }
@@ -204,5 +194,4 @@ TEST_P(RowSumOn, MakesNothingOfNoColumns) {
   EXPECT_TRUE(output.intact());
 }
 
-}  // namespace row_sum_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::row_sum_test

@@ -1,19 +1,8 @@
 #include "kernels/scanline/scanline.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace scanline_test {
+namespace vantage::kernels::scanline_test {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -109,8 +98,6 @@ double enumerated_minimum(const Scene& scene) {
 const JumpCost kJumps[] = {{0, 0},       {0.25F, 0.5F}, {1, 1},           {2, 1},
                            {0.5F, 2.5F}, {0.25F, 3},    {0.5F, kInfinity}};
 
-class Scanline : public EveryTarget {};
-
 TEST_P(Scanline, IsTheCheapestOfAllPaths) {
   std::mt19937 random(3);
   for (const JumpCost& jump : kJumps) {
@@ -165,5 +152,4 @@ TEST_P(Scanline, PrefersSmallChangesAndSmallCandidatesOfEqualPaths) {
 
 VANTAGE_ON_EVERY_TARGET(Scanline);
 
-}  // namespace scanline_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::scanline_test

@@ -1,15 +1,11 @@
 #include "kernels/simd_target.h"
 
-#include <gtest/gtest.h>
-
 #include <set>
 #include <string_view>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace simd_target_test {
+namespace vantage::kernels::simd_target_test {
 
 TEST(SimdTarget, AvailableTargetsAreBuiltOnesAndNotEmpty) {
   EXPECT_NE(available_targets(), 0);
@@ -50,5 +46,4 @@ TEST(SimdTarget, NamesTellTargetsApart) {
   }
 }
 
-}  // namespace simd_target_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::simd_target_test

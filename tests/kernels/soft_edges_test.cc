@@ -1,19 +1,10 @@
 #include "kernels/soft_edges/soft_edges.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
 #include <type_traits>
-#include <vector>
 
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace soft_edges_test {
+namespace vantage::kernels::soft_edges_test {
 
 struct Surfaces {
   std::vector<float> d, left_d, right_d;
@@ -163,5 +154,4 @@ TYPED_TEST(MixOutlines, EqualThePlainSum) {
   }
 }
 
-}  // namespace soft_edges_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::soft_edges_test

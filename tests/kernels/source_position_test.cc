@@ -1,19 +1,10 @@
 #include "kernels/source_position/source_position.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/projection_cases.h"
 
-namespace vantage::kernels {
-namespace source_position_test {
+namespace vantage::kernels::source_position_test {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
@@ -139,5 +130,4 @@ TEST(SourcePosition, EqualOnEveryInstructionSetAndToReference) {
   }
 }
 
-}  // namespace source_position_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::source_position_test

@@ -1,13 +1,9 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <random>
-#include <vector>
-
 #include "engine/image/image.h"
 #include "kernels/candidates.h"
 #include "kernels/star_row.h"
+#include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
 

@@ -1,18 +1,10 @@
 #include "kernels/still_pixels/still_pixels.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace still_pixels_test {
+namespace vantage::kernels::still_pixels_test {
 
 constexpr int kWidths[] = {1, 2, 3, 15, 16, 17, 31, 63, 64, 65, 129, 200};
 
@@ -26,7 +18,6 @@ std::vector<std::uint8_t> random_levels(std::mt19937& random, int width, int rea
   return levels;
 }
 
-class StillPixelsKernel : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(StillPixelsKernel);
 
 TEST_P(StillPixelsKernel, ChangesAreSumsOverThreeByThreePixels) {
@@ -125,5 +116,4 @@ TEST(StillView, NeedsAllThePixelsItCanComeFrom) {
   }
 }
 
-}  // namespace still_pixels_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::still_pixels_test

@@ -1,19 +1,11 @@
 #include "kernels/surface_fit/surface_blocks.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <functional>
-#include <random>
 #include <utility>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace surface_blocks_test {
+namespace vantage::kernels::surface_blocks_test {
 
 /// Implementation under test.
 struct Kernels {
@@ -90,7 +82,6 @@ std::vector<std::vector<std::int16_t>> fit(PixelMap& map, int radius_px,
   return blocks;
 }
 
-class SurfaceBlocks : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(SurfaceBlocks);
 
 TEST_P(SurfaceBlocks, EqualReference) {
@@ -209,5 +200,4 @@ TEST_P(SurfaceBlocks, SurfacesAcrossADepthEdgeHaveNoSay) {
   }
 }
 
-}  // namespace surface_blocks_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::surface_blocks_test

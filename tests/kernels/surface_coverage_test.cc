@@ -1,19 +1,10 @@
 #include "kernels/surface_coverage/surface_coverage.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <random>
 #include <utility>
-#include <vector>
 
 #include "tests/kernels/projection_cases.h"
 
-namespace vantage::kernels {
-namespace surface_coverage_test {
+namespace vantage::kernels::surface_coverage_test {
 
 /// A map and the way back into it.
 struct Source {
@@ -204,5 +195,4 @@ TEST(JointCoverage, MultipliesOddsOfEqualObservers) {
   EXPECT_LE(joint_coverage(0.5, 1, 1), 1);
 }
 
-}  // namespace surface_coverage_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::surface_coverage_test

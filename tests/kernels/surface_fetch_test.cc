@@ -1,14 +1,6 @@
 #include "kernels/surface_fetch/surface_fetch.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <random>
 #include <type_traits>
-#include <vector>
 
 #include "kernels/colour_fetch/colour_fetch.h"
 #include "kernels/pixel_row/pixel_row.h"
@@ -16,8 +8,7 @@
 #include "tests/kernels/projection_cases.h"
 #include "tests/keys_kernel.h"
 
-namespace vantage::kernels {
-namespace surface_fetch_test {
+namespace vantage::kernels::surface_fetch_test {
 
 using test::keys;
 
@@ -270,5 +261,4 @@ TEST(SurfaceFetchColours, DoesNotMixSurfaces) {
   }
 }
 
-}  // namespace surface_fetch_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::surface_fetch_test

@@ -1,24 +1,15 @@
 #include "kernels/surface_fit/surface_fit.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <functional>
-#include <limits>
-#include <random>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "kernels/surface_fit/surface_blocks.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace surface_fit_test {
+namespace vantage::kernels::surface_fit_test {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 using Maybe = std::function<float(int x, int y)>;  // kNone: no match
@@ -187,7 +178,6 @@ double plane_over(MarginMap& map, int x, int y, Rounding rounding) {
   return plane[0];
 }
 
-class SurfaceFit : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(SurfaceFit);
 
 TEST_P(SurfaceFit, EqualsPlainTranscription) {
@@ -401,5 +391,4 @@ TEST(SurfaceLattice, SamplesAreApartAndInsideTheWindow) {
   }
 }
 
-}  // namespace surface_fit_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::surface_fit_test

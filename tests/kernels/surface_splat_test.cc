@@ -1,22 +1,13 @@
 #include "kernels/surface_splat/surface_splat.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <numeric>
-#include <random>
 #include <utility>
-#include <vector>
 
 #include "kernels/forward_warp/forward_warp.h"
 #include "tests/kernels/projection_cases.h"
 
-namespace vantage::kernels {
-namespace surface_splat_test {
+namespace vantage::kernels::surface_splat_test {
 
 constexpr float kNowhere = -std::numeric_limits<float>::infinity();
 
@@ -490,5 +481,4 @@ TEST(SurfaceSplat, WalksEdgesAlongTheirAxis) {
   EXPECT_EQ(lower(-1.5).sign, 1);
 }
 
-}  // namespace surface_splat_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::surface_splat_test

@@ -1,19 +1,9 @@
 #include "kernels/symmetric_path/symmetric_path.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "kernels/winner/winner.h"
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace symmetric_path_test {
+namespace vantage::kernels::symmetric_path_test {
 
 /// Both images' cells of a row. Few different energies: many solutions are equally good.
 struct Scene {
@@ -152,5 +142,4 @@ TEST(SymmetricPath, TakesTheSmallestDisparitiesOfEqualSolutions) {
   EXPECT_EQ(matches_of(scene).left, std::vector<std::int32_t>(6, 0));
 }
 
-}  // namespace symmetric_path_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::symmetric_path_test

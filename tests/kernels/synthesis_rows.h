@@ -1,13 +1,8 @@
 #pragma once
 
-#include <cmath>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "kernels/intensity_sums/intensity_sums.h"
 #include "kernels/pixel_row/pixel_row.h"
-#include "kernels/simd_target.h"
+#include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels {
 
@@ -16,19 +11,6 @@ inline constexpr float kUnknownDisparity = std::numeric_limits<float>::quiet_NaN
 /// Widths around vector and block lengths.
 inline const std::vector<int> kAwkwardWidths = {1,  2,  3,  4,  5,  7,  8,   9,   15,  16, 17,
                                                 31, 33, 63, 64, 65, 97, 127, 129, 200, 257};
-
-/// Calls body() once on each instruction set of this machine.
-template <typename Body>
-void for_each_target(const Body& body) {
-  const long long all = available_targets();
-  for (int bit = 0; bit < 63; ++bit) {
-    if (const long long target = 1LL << bit; (all & target) != 0) {
-      force_target(target);
-      body();
-    }
-  }
-  force_target(0);
-}
 
 /// Piecewise smooth disparities in quarter pixels with jumps and unknown stretches, as maps have.
 inline std::vector<float> random_disparities(std::mt19937& random, int width, float min,

@@ -1,19 +1,11 @@
 #include "kernels/view_blend/view_blend.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
 #include <type_traits>
-#include <vector>
 
 #include "kernels/pixel_row/pixel_row.h"
 #include "tests/kernels/synthesis_rows.h"
 
-namespace vantage::kernels {
-namespace view_blend_test {
+namespace vantage::kernels::view_blend_test {
 
 template <typename T>
 struct View {
@@ -174,5 +166,4 @@ TEST(ViewBlendSources, NameTheImages) {
   EXPECT_EQ(blend_row(pair, {}, 1, without), 1);
 }
 
-}  // namespace view_blend_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::view_blend_test

@@ -1,17 +1,8 @@
 #include "kernels/view_projection/view_projection.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/projection_cases.h"
 
-namespace vantage::kernels {
-namespace view_projection_test {
+namespace vantage::kernels::view_projection_test {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -92,5 +83,4 @@ TEST(ViewProjection, EqualOnEveryInstructionSetAndToReference) {
   }
 }
 
-}  // namespace view_projection_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::view_projection_test

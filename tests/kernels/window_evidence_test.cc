@@ -1,20 +1,11 @@
 #include "kernels/window_evidence/window_evidence.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace window_evidence_test {
+namespace vantage::kernels::window_evidence_test {
 
-class WindowEvidence : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(WindowEvidence);
 
 /// Random codes and windows.
@@ -91,5 +82,4 @@ TEST_P(WindowEvidence, EqualsReference) {
   }
 }
 
-}  // namespace window_evidence_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::window_evidence_test

@@ -1,19 +1,11 @@
 #include "kernels/window_start/window_start.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace window_start_test {
+namespace vantage::kernels::window_start_test {
 
-class WindowStart : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(WindowStart);
 
 TEST_P(WindowStart, EqualsReference) {
@@ -82,5 +74,4 @@ TEST_P(WindowStart, SecondWinnersEqualReference) {
   }
 }
 
-}  // namespace window_start_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::window_start_test

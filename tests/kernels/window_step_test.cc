@@ -1,18 +1,10 @@
 #include "kernels/window_step/window_step.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
 
 #include "tests/kernels/kernel_test_utils.h"
 
-namespace vantage::kernels {
-namespace window_step_test {
+namespace vantage::kernels::window_step_test {
 
 WindowCells random_cells(std::mt19937& random, int max) {
   WindowCells cells = 0;
@@ -117,7 +109,6 @@ WindowPrior random_prior(std::mt19937& random) {
   return prior;
 }
 
-class WindowStep : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(WindowStep);
 
 using Rows = std::array<std::vector<WindowCells>, kWindows>;
@@ -248,5 +239,4 @@ TEST_P(WindowStep, DisparitiesEqualReference) {
   }
 }
 
-}  // namespace window_step_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::window_step_test

@@ -1,11 +1,6 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <ostream>
-#include <random>
-#include <vector>
 
 #include "kernels/winner/winner.h"
 #include "tests/kernels/kernel_test_utils.h"

@@ -1,17 +1,9 @@
 #include "kernels/winner/winner.h"
 
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <vector>
-
 #include "tests/kernels/kernel_test_utils.h"
 #include "tests/kernels/winner_rows.h"
 
-namespace vantage::kernels {
-namespace winner_test {
+namespace vantage::kernels::winner_test {
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 
@@ -68,7 +60,6 @@ void sweep(Kernel kernel) {
 
 TEST(WinnerReference, IsTheLeastMeanOverSamplesInsideBothImages) { sweep(select_winners_row_ref); }
 
-class Winner : public EveryTarget {};
 VANTAGE_ON_EVERY_TARGET(Winner);
 
 TEST_P(Winner, IsTheLeastMeanOverSamplesInsideBothImages) { sweep(select_winners_row); }
@@ -158,5 +149,4 @@ TEST(CandidateGeometry, AgreesWithTheDefinition) {
   });
 }
 
-}  // namespace winner_test
-}  // namespace vantage::kernels
+}  // namespace vantage::kernels::winner_test
