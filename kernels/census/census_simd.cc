@@ -113,9 +113,7 @@ void ray_census(const RayCensusRows& rows, int width, int thresholds, const RayC
 }
 
 #if HWY_TARGET == HWY_SCALAR
-void byte_ray_census_codes(const ByteRayCensusRows& rows, int width, const RayCensusCodes& codes) {
-  byte_ray_census_code_row_ref(rows, width, codes);
-}
+static constexpr auto& byte_ray_census_codes = byte_ray_census_code_row_ref;
 #else
 // Processes whole vectors from column x on, the last one ending at or after `end`. Returns the next
 // column.

@@ -10,9 +10,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 #if HWY_TARGET == HWY_SCALAR
 // HWY_SCALAR has no four-lane vector to hold a pixel.
-void fetch_bicubic(const BicubicFetchRow& row, float* colours) {
-  fetch_bicubic_row_ref(row, colours);
-}
+static constexpr auto& fetch_bicubic = fetch_bicubic_row_ref;
 #else
 
 // Positions whose columns and weights are computed at a time; a multiple of every vector length.

@@ -11,10 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void combined(const CombinedRow& row, const CombinedModel& model, CombinedCells meaning,
-              float* cells) {
-  combined_row_ref(row, model, meaning, cells);
-}
+static constexpr auto& combined = combined_row_ref;
 #else
 
 // Steps of two vectors of residuals, in grouped order.

@@ -63,9 +63,7 @@ void reduce_compact_energies(const BlockRow<std::uint8_t>& row, float weight,
                              std::uint16_t* /*work*/, std::uint8_t* energies) {
   reduce_compact_energies_row_ref(row, weight, energies);
 }
-void allow_slant(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty) {
-  allow_slant_row_ref(energies, columns, lanes, penalty);
-}
+static constexpr auto& allow_slant = allow_slant_row_ref;
 #else
 // 16-bit sums of byte cells, even and odd lanes separately; neither leaves its 128-bit block.
 template <class D8>

@@ -16,9 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void winners(const EnergyRow& row, std::int32_t* indices, FixedEnergy* min) {
-  select_energy_winners_row_ref(row, indices, min);
-}
+static constexpr auto& winners = select_energy_winners_row_ref;
 #else
 
 // 0, 1, … per lane.

@@ -12,9 +12,7 @@ namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
 // Scanning all samples in every round is worthwhile only with several lanes.
-void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
-  take_filled_medians_row_ref(row, filled_px);
-}
+static constexpr auto& take_filled_medians_simd = take_filled_medians_row_ref;
 #else
 using TagF = hn::ScalableTag<float>;
 using TagI = hn::ScalableTag<std::int32_t>;

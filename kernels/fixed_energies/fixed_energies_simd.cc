@@ -14,18 +14,9 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void of_bytes(const CompactRow& row, ByteSteps steps, FixedEnergy* energies,
-              EnergyPitches pitches) {
-  fixed_energies_of_bytes_row_ref(row, steps, energies, pitches);
-}
-void of_likelihoods(const LikelihoodRow& row, float steps_per_nat, FixedEnergy* energies,
-                    EnergyPitches pitches) {
-  fixed_energies_of_likelihoods_row_ref(row, steps_per_nat, energies, pitches);
-}
-void to_bytes(const FixedEnergy* energies, int cells, FixedWeight bytes_per_step,
-              std::uint8_t* bytes) {
-  bytes_of_fixed_energies_row_ref(energies, cells, bytes_per_step, bytes);
-}
+static constexpr auto& of_bytes = fixed_energies_of_bytes_row_ref;
+static constexpr auto& of_likelihoods = fixed_energies_of_likelihoods_row_ref;
+static constexpr auto& to_bytes = bytes_of_fixed_energies_row_ref;
 #else
 
 using ByteTag = hn::Rebind<std::uint8_t, EnergyTag>;

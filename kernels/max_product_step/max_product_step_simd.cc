@@ -14,8 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void start(const MaxProductRow& row) { max_product_start_row_ref(row); }
-void step(const MaxProductRow& row) { max_product_row_ref(row); }
+static constexpr auto& start = max_product_start_row_ref;
+static constexpr auto& step = max_product_row_ref;
 #else
 
 using EnergyColumns = StarColumns<FixedEnergy>;

@@ -46,12 +46,9 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void start(const PairRow& row) { start_pair_row_ref(row); }
-void left_part(const PairRow& row, const BlockRow<std::uint8_t>& part, int first_column,
-               std::uint8_t* energies) {
-  reduce_left_part_ref(row, part, first_column, energies);
-}
-void right_row(const PairRow& row, std::uint8_t* energies) { reduce_right_row_ref(row, energies); }
+static constexpr auto& start = start_pair_row_ref;
+static constexpr auto& left_part = reduce_left_part_ref;
+static constexpr auto& right_row = reduce_right_row_ref;
 #else
 
 // 16-bit numbers of the even and of the odd lanes of a vector of bytes.

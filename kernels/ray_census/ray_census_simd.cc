@@ -16,13 +16,9 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void hamming(const RayCensusPairs& row, float* cells) { ray_hamming_row_ref(row, cells); }
-void likelihoods(const RayCensusPairs& row, const LikelihoodByDistance& table, float* cells) {
-  ray_census_likelihood_row_ref(row, table, cells);
-}
-void energies(const RayCensusPairs& row, const ByteByDistance& table, std::uint8_t* cells) {
-  ray_census_energy_row_ref(row, table, cells);
-}
+static constexpr auto& hamming = ray_hamming_row_ref;
+static constexpr auto& likelihoods = ray_census_likelihood_row_ref;
+static constexpr auto& energies = ray_census_energy_row_ref;
 #else
 
 // Codes of one column, in every lane.

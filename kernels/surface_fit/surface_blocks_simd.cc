@@ -12,12 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void block_row(const SurfaceBlockRow& row, const SurfaceFormat& format, std::int16_t* blocks) {
-  surface_block_row_ref(row, format, blocks);
-}
-void fit_surface_blocks(const SurfaceRow& blocks, const SurfaceBlockRow& row) {
-  fit_surface_block_row_ref(blocks, row);
-}
+static constexpr auto& block_row = surface_block_row_ref;
+static constexpr auto& fit_surface_blocks = fit_surface_block_row_ref;
 #else
 // Pixels of half a vector of blocks, which are a vector of floats, and of a whole one.
 constexpr int kHalfPixels = kSurfaceStep;

@@ -12,13 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void sample_row_simd(const float* disparity_px, const std::uint8_t* unmatched, int width,
-                     const SurfaceFormat& format, std::int16_t* samples) {
-  surface_sample_row_ref(disparity_px, unmatched, width, format, samples);
-}
-void fit_surface_simd(const SurfaceRow& row, float* fitted_px) {
-  fit_surface_row_ref(row, fitted_px);
-}
+static constexpr auto& sample_row_simd = surface_sample_row_ref;
+static constexpr auto& fit_surface_simd = fit_surface_row_ref;
 #else
 void sample_row_simd(const float* disparity_px, const std::uint8_t* unmatched, int width,
                      const SurfaceFormat& format, std::int16_t* samples) {

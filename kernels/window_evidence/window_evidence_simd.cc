@@ -13,10 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void evidence(const WindowEvidenceRow& row, const ByteByDistance& by_distance,
-              const std::array<WindowCells*, kWindows>& evidence) {
-  window_evidence_row_ref(row, by_distance, evidence);
-}
+static constexpr auto& evidence = window_evidence_row_ref;
 #else
 
 // With columns of 2×2 pixels a block of 16 bytes holds eight candidates of the left pixel of a

@@ -10,13 +10,8 @@ HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
 #if HWY_TARGET == HWY_SCALAR
-void second_winners(const std::array<const std::int16_t*, 3>& winners, int columns,
-                    std::int16_t* second) {
-  second_winners_row_ref(winners, columns, second);
-}
-void start(const CoarseEnergies& coarse, WindowCells* support) {
-  window_start_row_ref(coarse, support);
-}
+static constexpr auto& second_winners = second_winners_row_ref;
+static constexpr auto& start = window_start_row_ref;
 #else
 
 void second_winners(const std::array<const std::int16_t*, 3>& winners, int columns,

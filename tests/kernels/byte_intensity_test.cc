@@ -13,11 +13,8 @@ TEST_P(ByteIntensity, RoundingEqualsReference) {
     for (float& intensity : intensities) {
       intensity = static_cast<float>(random_int(random, 0, 4 * 255)) / 4;  // ties occur
     }
-    GuardedRow<std::uint8_t> rounded(width, 3, 77), expected(width, 3, 77);
-    rounded_intensity_row(intensities.data(), static_cast<int>(width), rounded.data());
-    rounded_intensity_row_ref(intensities.data(), static_cast<int>(width), expected.data());
-    EXPECT_TRUE(rounded.intact());
-    EXPECT_EQ(rounded.values(), expected.values());
+    equal_rows<std::uint8_t>(width, rounded_intensity_row, rounded_intensity_row_ref,
+                             intensities.data(), static_cast<int>(width));
   }
 }
 

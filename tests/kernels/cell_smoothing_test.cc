@@ -117,12 +117,8 @@ VANTAGE_ON_EVERY_TARGET(CellSmoothingOn);
 
 TEST_P(CellSmoothingOn, AddsWeightedRunsAsTheReferenceDoes) {
   for_each_case_of_runs([](const Runs& runs, int count) {
-    std::vector<float> expected(static_cast<std::size_t>(count));
-    symmetric_sum_ref(runs.sum(count), expected.data());
-    GuardedRow<float> output(expected.size(), 3, kSentinel);
-    symmetric_sum(runs.sum(count), output.data());
-    ASSERT_EQ(output.values(), expected);
-    ASSERT_TRUE(output.intact());
+    equal_rows<float>(static_cast<std::size_t>(count), symmetric_sum, symmetric_sum_ref,
+                      runs.sum(count));
   });
 }
 

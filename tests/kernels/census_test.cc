@@ -134,9 +134,7 @@ TEST_P(Census, HammingDistance) {
     }
   };
   for_each_feature_rows<std::uint32_t, 2>(draw, [](const CensusPairs& row) {
-    const auto cells = equal_cells(
-        cell_count(row), [&](float* out) { hamming_row(row, out); },
-        [&](float* out) { hamming_row_ref(row, out); });
+    const auto cells = equal_rows<float>(cell_count(row), hamming_row, hamming_row_ref, row);
     for (int j = 0; j < row.columns; ++j) {
       for (int i = 0; i < row.lanes; ++i) {
         int different = 0;

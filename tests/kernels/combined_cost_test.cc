@@ -119,7 +119,7 @@ TEST_P(CombinedCost, EqualsTheTranscriptionAndTheEquation) {
       for_each_rows([&](const CombinedRow& row) {
         const CombinedModel model =
             combined_model(made.sigmas, made.epsilon, row.levels.channels, meaning);
-        const auto cells = equal_cells(
+        const auto cells = equal_rows<float>(
             cell_count(row.levels), [&](float* out) { combined_row(row, model, meaning, out); },
             [&](float* out) { combined_row_ref(row, model, meaning, out); });
         if (GetParam() != each_target().front()) {

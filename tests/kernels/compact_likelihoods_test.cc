@@ -6,6 +6,8 @@
 
 namespace vantage::kernels::compact_likelihoods_test {
 
+VANTAGE_ON_EVERY_TARGET(CompactLikelihoods);
+
 struct Shape {
   int columns;
   int count;
@@ -233,20 +235,13 @@ TEST_P(CompactLikelihoods, ProbabilitiesSurviveToHalfAStep) {
   while (probabilities.size() < 256) {
     probabilities.push_back(static_cast<float>(std::exp2(-random_int(random, 0, 36000) / 1000.0)));
   }
-  GuardedRow<std::uint8_t> compact(probabilities.size(), 7, 99);
-  compact_probabilities_row(probabilities.data(), static_cast<int>(probabilities.size()),
-                            compact.data());
-  EXPECT_TRUE(compact.intact());
-  std::vector<std::uint8_t> reference(probabilities.size());
-  compact_probabilities_row_ref(probabilities.data(), static_cast<int>(probabilities.size()),
-                                reference.data());
-  ASSERT_EQ(compact.values(), reference);
+  const auto reference = equal_rows<std::uint8_t>(
+      probabilities.size(), compact_probabilities_row, compact_probabilities_row_ref,
+      probabilities.data(), static_cast<int>(probabilities.size()));
   for (std::size_t k = 0; k < probabilities.size(); ++k) {
     const double exponent = probabilities[k] > 0 ? -std::log2(probabilities[k]) : 1000;
     ASSERT_NEAR(reference[k] / 8.0, std::clamp(exponent, 0.0, 255 / 8.0), 0.5 / 8 + 1e-5);
   }
 }
-
-VANTAGE_ON_EVERY_TARGET(CompactLikelihoods);
 
 }  // namespace vantage::kernels::compact_likelihoods_test

@@ -7,7 +7,7 @@
 
 namespace vantage::kernels::diffusion_step_test {
 
-class DiffusionStep : public EveryTarget {};
+VANTAGE_ON_EVERY_TARGET(DiffusionStep);
 
 TEST_P(DiffusionStep, EqualsReferenceExactly) {
   unsigned seed = 1;
@@ -60,7 +60,5 @@ TEST_P(DiffusionStep, PullsEachColumnTowardsItsNeighboursByTheirWeights) {
     }
   }
 }
-
-VANTAGE_EVERY_TARGET_OF(DiffusionStep);
 
 }  // namespace vantage::kernels::diffusion_step_test

@@ -17,12 +17,8 @@ TEST_P(EdgeWeightsRow, FallWithTheDifferenceOfGreyLevels) {
       }
       const float* const second = pixels.data() + count;  // unaligned
       const auto size = static_cast<std::size_t>(count);
-      GuardedRow<float> weights(size, random() % 5, -7);
-      edge_weights_row(pixels.data(), second, count, model, weights.data());
-      EXPECT_TRUE(weights.intact());
-      std::vector<float> reference(size);
-      edge_weights_row_ref(pixels.data(), second, count, model, reference.data());
-      ASSERT_EQ(weights.values(), reference) << count;
+      const auto reference = equal_rows<float>(size, edge_weights_row, edge_weights_row_ref,
+                                               pixels.data(), second, count, model);
       for (std::size_t x = 0; x < size; ++x) {
         const double difference = std::abs(static_cast<double>(pixels[x]) - second[x]);
         ASSERT_NEAR(reference[x],
@@ -47,12 +43,8 @@ TEST_P(EdgeWeightsRow, FixedWeightsAreTheNearestOnes) {
         weights[0] = 1;  // which has no number of its own
         weights[2] = 0;
       }
-      GuardedRow<FixedWeight> fixed(size, random() % 5, -7);
-      fixed_weights_row(weights.data(), count, factor, fixed.data());
-      EXPECT_TRUE(fixed.intact());
-      std::vector<FixedWeight> reference(size);
-      fixed_weights_row_ref(weights.data(), count, factor, reference.data());
-      ASSERT_EQ(fixed.values(), reference) << count;
+      const auto reference = equal_rows<FixedWeight>(size, fixed_weights_row, fixed_weights_row_ref,
+                                                     weights.data(), count, factor);
       for (std::size_t x = 0; x < size; ++x) {
         const double units = 32768.0 * static_cast<double>(factor) * weights[x];
         ASSERT_NEAR(reference[x], std::min(units, 32767.0), 0.51);

@@ -6,6 +6,10 @@
 
 namespace vantage::kernels::energy_winner_test {
 
+VANTAGE_ON_EVERY_TARGET(EnergyProbability);
+
+VANTAGE_ON_EVERY_TARGET(EnergyWinner);
+
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr FixedEnergy kEnergySentinel = -77;
 constexpr float kFloatSentinel = -12345.5F;
@@ -320,8 +324,5 @@ TEST(EnergyProbabilityOnAllTargets, IsIdentical) {
   }
   force_target(0);
 }
-
-VANTAGE_ON_EVERY_TARGET(EnergyWinner);
-VANTAGE_ON_EVERY_TARGET(EnergyProbability);
 
 }  // namespace vantage::kernels::energy_winner_test

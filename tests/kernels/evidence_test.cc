@@ -33,9 +33,8 @@ double norm(double x, double y, EvidenceNorm norm) {
 TEST_P(Evidence, NegatedEvidence) {
   for (const EvidenceNorm of : kAllEvidenceNorms) {
     for_each_feature_rows<float, 3>(draw_component, [&](const GradientPairs& row) {
-      const auto cells = equal_cells(
-          cell_count(row), [&](float* out) { negated_evidence_row(row, of, out); },
-          [&](float* out) { negated_evidence_row_ref(row, of, out); });
+      const auto cells = equal_rows<float>(cell_count(row), negated_evidence_row,
+                                           negated_evidence_row_ref, row, of);
       for (int j = 0; j < row.columns; ++j) {
         for (int i = 0; i < row.lanes; ++i) {
           const int k = j * row.partner_step + i;
@@ -116,8 +115,8 @@ TEST_P(Evidence, Likelihood) {
               kernel(row, sigma, .1F, out);
             };
           };
-          const auto cells = equal_cells(costs.size(), run(likelihood_of_evidence),
-                                         run(likelihood_of_evidence_ref));
+          const auto cells = equal_rows<float>(costs.size(), run(likelihood_of_evidence),
+                                               run(likelihood_of_evidence_ref));
           for (int j = 0; j < row.columns; ++j) {
             const float* cost = costs.data() + static_cast<std::size_t>(j) * lanes;
             const auto inside = [&](int i) {

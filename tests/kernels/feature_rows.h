@@ -86,21 +86,6 @@ void for_each_feature_rows(const Draw& draw, const Check& check) {
       });
 }
 
-/// Runs kernel(cells) and reference(cells) on rows of cells; both must write the same, and nothing
-/// beside them. Returns what they wrote.
-template <typename Kernel, typename ReferenceKernel>
-std::vector<float> equal_cells(std::size_t cells, const Kernel& kernel,
-                               const ReferenceKernel& reference) {
-  constexpr float kSentinel = -12345.5F;
-  GuardedRow<float> actual(cells, 3, kSentinel);
-  GuardedRow<float> expected(cells, 0, kSentinel);
-  kernel(actual.data());
-  reference(expected.data());
-  EXPECT_TRUE(actual.intact());
-  EXPECT_EQ(actual.values(), expected.values());
-  return actual.values();
-}
-
 template <typename T, int kPlanes>
 std::size_t cell_count(const FeaturePairs<T, kPlanes>& row) {
   return static_cast<std::size_t>(row.columns) * static_cast<std::size_t>(row.lanes);

@@ -5,6 +5,8 @@
 
 namespace vantage::kernels::fixed_energies_test {
 
+VANTAGE_ON_EVERY_TARGET(FixedEnergies);
+
 constexpr FixedEnergy kSentinel = -77;
 
 struct Shape {
@@ -46,12 +48,10 @@ TEST_P(FixedEnergies, OfBytesEqualReference) {
     }
     for (const float steps : {0.01F, 1.0F, 32.0F, 55.4F, 127.9F}) {
       const CompactRow row{cells.data(), shape.columns, lanes, shape.count};
-      GuardedRow<FixedEnergy> actual(cells.size(), 3, kSentinel);
-      fixed_energies_of_bytes_row(row, ByteSteps(steps), actual.data());
-      EXPECT_TRUE(actual.intact());
-      std::vector<FixedEnergy> reference(cells.size());
-      fixed_energies_of_bytes_row_ref(row, ByteSteps(steps), reference.data());
-      ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
+      const auto reference = equal_rows<FixedEnergy>(
+          cells.size(),
+          [&](FixedEnergy* out) { fixed_energies_of_bytes_row(row, ByteSteps(steps), out); },
+          [&](FixedEnergy* out) { fixed_energies_of_bytes_row_ref(row, ByteSteps(steps), out); });
       for (std::size_t k = 0; k < cells.size(); ++k) {
         if (static_cast<int>(k) % lanes >= shape.count) {
           ASSERT_EQ(reference[k], kMaxEnergy) << k;
@@ -146,12 +146,9 @@ TEST_P(FixedEnergies, ToBytesAreTheRoundedProductCut) {
         std::copy_n(energies.begin(), cells, copy.data());
         return copy;
       }();
-      GuardedRow<std::uint8_t> actual(count, 5, 77);
-      bytes_of_fixed_energies_row(row.data(), cells, bytes_per_step, actual.data());
-      EXPECT_TRUE(actual.intact());
-      std::vector<std::uint8_t> reference(count);
-      bytes_of_fixed_energies_row_ref(row.data(), cells, bytes_per_step, reference.data());
-      ASSERT_EQ(actual.values(), reference);
+      const auto reference = equal_rows<std::uint8_t>(count, bytes_of_fixed_energies_row,
+                                                      bytes_of_fixed_energies_row_ref, row.data(),
+                                                      cells, bytes_per_step);
       for (std::size_t k = 0; k < count; ++k) {
         ASSERT_EQ(reference[k], std::min(255.0, std::floor(energies[k] * (weight / 32768.0) + 0.5)))
             << energies[k] << " times " << weight;
@@ -170,12 +167,12 @@ TEST_P(FixedEnergies, OfLikelihoodsAreTheirNegativeLogarithms) {
         cells[k] = static_cast<float>(std::exp2(-random_int(random, 0, 130000) / 1000.0));
       }
       const LikelihoodRow row{cells.data(), shape.columns, lanes, shape.count};
-      GuardedRow<FixedEnergy> actual(cells.size(), 3, kSentinel);
-      fixed_energies_of_likelihoods_row(row, steps_per_nat, actual.data());
-      EXPECT_TRUE(actual.intact());
-      std::vector<FixedEnergy> reference(cells.size());
-      fixed_energies_of_likelihoods_row_ref(row, steps_per_nat, reference.data());
-      ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
+      const auto reference = equal_rows<FixedEnergy>(
+          cells.size(),
+          [&](FixedEnergy* out) { fixed_energies_of_likelihoods_row(row, steps_per_nat, out); },
+          [&](FixedEnergy* out) {
+            fixed_energies_of_likelihoods_row_ref(row, steps_per_nat, out);
+          });
       for (std::size_t k = 0; k < cells.size(); ++k) {
         if (static_cast<int>(k) % lanes >= shape.count) {
           ASSERT_EQ(reference[k], kMaxEnergy);
@@ -210,7 +207,5 @@ TEST_P(FixedEnergies, OfVanishingLikelihoodsAreThatOfTheLeast) {
   }
   EXPECT_LT(energies[2], kMaxEnergy);
 }
-
-VANTAGE_ON_EVERY_TARGET(FixedEnergies);
 
 }  // namespace vantage::kernels::fixed_energies_test

@@ -4,6 +4,8 @@
 
 namespace vantage::kernels::half_energies_test {
 
+VANTAGE_ON_EVERY_TARGET(HalfEnergies);
+
 /// What the bits of a half float mean (IEEE 754 binary16).
 double plain_value(std::uint16_t half) {
   const int exponent = (half >> 10) & 31;
@@ -63,20 +65,13 @@ TEST_P(HalfEnergies, ConvertLikeTheReference) {
   for (const std::size_t size : {16U, 48U, 256U}) {
     const auto energies = random_energies(size, random);
     for (const float scale : {1.0F, 0.5F}) {
-      GuardedRow<std::uint16_t> halves(size, 3, 77);
-      half_energies_row(energies.data(), static_cast<int>(size), scale, halves.data());
-      EXPECT_TRUE(halves.intact());
-      std::vector<std::uint16_t> reference(size);
-      half_energies_row_ref(energies.data(), static_cast<int>(size), scale, reference.data());
-      ASSERT_EQ(halves.values(), reference);
+      const auto reference =
+          equal_rows<std::uint16_t>(size, half_energies_row, half_energies_row_ref, energies.data(),
+                                    static_cast<int>(size), scale);
 
-      GuardedRow<float> back(size, 1, -3);
-      energies_of_half_row(reference.data(), static_cast<int>(size), 1 / scale, back.data());
-      EXPECT_TRUE(back.intact());
-      std::vector<float> back_reference(size);
-      energies_of_half_row_ref(reference.data(), static_cast<int>(size), 1 / scale,
-                               back_reference.data());
-      ASSERT_EQ(back.values(), back_reference);
+      const auto back_reference =
+          equal_rows<float>(size, energies_of_half_row, energies_of_half_row_ref, reference.data(),
+                            static_cast<int>(size), 1 / scale);
       for (std::size_t k = 0; k < size; ++k) {
         ASSERT_NEAR(back_reference[k], energies[k], std::abs(energies[k]) / 2048 + 1e-7);
       }
@@ -95,12 +90,8 @@ TEST_P(HalfEnergies, OfBlocksAreMeans) {
         const auto& lower = has_lower ? other : upper;
         const BlockRow<float> row{upper.data(), lower.data(), columns, lanes};
         const auto cells = static_cast<std::size_t>(row.blocks() * lanes);
-        GuardedRow<std::uint16_t> actual(cells, 3, 77);
-        reduce_energies_row(row, 0.5F, actual.data());
-        EXPECT_TRUE(actual.intact());
-        std::vector<std::uint16_t> reference(cells);
-        reduce_energies_row_ref(row, 0.5F, reference.data());
-        ASSERT_EQ(actual.values(), reference);
+        const auto reference = equal_rows<std::uint16_t>(cells, reduce_energies_row,
+                                                         reduce_energies_row_ref, row, 0.5F);
         for (std::size_t k = 0; k < cells; ++k) {
           const int lane = static_cast<int>(k) % lanes;
           const int left = static_cast<int>(k) / lanes * 2;
@@ -138,12 +129,8 @@ TEST_P(HalfEnergies, OfBlocksOfHalvesAreMeans) {
     }
     const BlockRow<std::uint16_t> row{rows[0].data(), rows[1].data(), columns, 32};
     const auto cells = static_cast<std::size_t>(row.blocks() * 32);
-    GuardedRow<std::uint16_t> actual(cells, 3, 77);
-    reduce_half_energies_row(row, actual.data());
-    EXPECT_TRUE(actual.intact());
-    std::vector<std::uint16_t> reference(cells);
-    reduce_half_energies_row_ref(row, reference.data());
-    ASSERT_EQ(actual.values(), reference);
+    const auto reference = equal_rows<std::uint16_t>(cells, reduce_half_energies_row,
+                                                     reduce_half_energies_row_ref, row);
     // The same as of floats of the same value.
     std::vector<std::uint16_t> of_floats(cells);
     reduce_energies_row_ref({plain_rows[0].data(), plain_rows[1].data(), columns, 32}, 1,
@@ -188,7 +175,5 @@ TEST_P(HalfEnergies, GoToTheColumnsOfTheirBlock) {
     }
   }
 }
-
-VANTAGE_ON_EVERY_TARGET(HalfEnergies);
 
 }  // namespace vantage::kernels::half_energies_test

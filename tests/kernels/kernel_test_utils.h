@@ -103,15 +103,27 @@ class GuardedRow {
   T sentinel_;
 };
 
-/// What `write(T* row)` leaves in a row of `size` values, which begins at any address. Nothing but
-/// the row may change.
-template <typename T, typename Write>
-std::vector<T> written(std::size_t size, T sentinel, const Write& write) {
+/// What `kernel(arguments..., T* row)` writes to a row of `size` values, which begins at any
+/// address. Nothing but the row may change.
+template <typename T, typename Kernel, typename... Arguments>
+std::vector<T> written_row(std::size_t size, T sentinel, const Kernel& kernel,
+                           const Arguments&... arguments) {
   static std::mt19937 random(77);
   GuardedRow<T> row(size, random() % 5, sentinel);
-  write(row.data());
-  EXPECT_TRUE(row.intact()) << "wrote beyond a row of " << size;
+  kernel(arguments..., row.data());
+  EXPECT_TRUE(row.intact()) << "changed memory beside a row of " << size;
   return row.values();
+}
+
+/// The row that a kernel and its reference write, which must be the same. Different sentinels show
+/// what either of them leaves out.
+template <typename T, typename Kernel, typename Reference, typename... Arguments>
+std::vector<T> equal_rows(std::size_t size, const Kernel& kernel, const Reference& reference,
+                          const Arguments&... arguments) {
+  const auto expected = written_row(size, static_cast<T>(-99), reference, arguments...);
+  EXPECT_EQ(written_row(size, static_cast<T>(77), kernel, arguments...), expected)
+      << "row of " << size;
+  return expected;
 }
 
 /// Lane counts below, at and beyond the blocks of vectors that kernels work in.

@@ -16,12 +16,9 @@ TEST_P(LumaIntensity, AreTheRoundedLuma) {
       for (std::size_t k = 0; k < pixels.size(); ++k) {
         pixels[k] = random() % 4 == 0 ? 255 : static_cast<std::uint8_t>(random());
       }
-      GuardedRow<std::uint8_t> levels(static_cast<std::size_t>(width), random() % 5, 0xA5);
-      luma_intensity_row(pixels.data(), width, channels, levels.data());
-      ASSERT_TRUE(levels.intact());
-      std::vector<std::uint8_t> reference(static_cast<std::size_t>(width));
-      luma_intensity_row_ref(pixels.data(), width, channels, reference.data());
-      ASSERT_EQ(levels.values(), reference);
+      const auto reference =
+          equal_rows<std::uint8_t>(static_cast<std::size_t>(width), luma_intensity_row,
+                                   luma_intensity_row_ref, pixels.data(), width, channels);
       for (int x = 0; x < width; ++x) {
         const std::uint8_t* pixel = pixels.data() + static_cast<std::ptrdiff_t>(x) * channels;
         const double luma =
@@ -40,12 +37,8 @@ TEST_P(LumaIntensity, LumaIsNotRounded) {
       for (std::size_t k = 0; k < pixels.size(); ++k) {
         pixels[k] = random() % 4 == 0 ? 255 : static_cast<std::uint8_t>(random());
       }
-      GuardedRow<float> luma(static_cast<std::size_t>(width), random() % 5, -7);
-      luma_row(pixels.data(), width, channels, luma.data());
-      ASSERT_TRUE(luma.intact());
-      std::vector<float> reference(static_cast<std::size_t>(width));
-      luma_row_ref(pixels.data(), width, channels, reference.data());
-      ASSERT_EQ(luma.values(), reference);
+      const auto reference = equal_rows<float>(static_cast<std::size_t>(width), luma_row,
+                                               luma_row_ref, pixels.data(), width, channels);
       for (int x = 0; x < width; ++x) {
         const std::uint8_t* pixel = pixels.data() + static_cast<std::ptrdiff_t>(x) * channels;
         ASSERT_NEAR(reference[static_cast<std::size_t>(x)],

@@ -4,6 +4,8 @@
 
 namespace vantage::kernels::machine_ceiling_test {
 
+VANTAGE_ON_EVERY_TARGET(MachineCeiling);
+
 TEST_P(MachineCeiling, TriadAndLoadsDoWhatTheyAreCountedAs) {
   for (const std::size_t count : {0UL, 1UL, 7UL, 64UL, 131UL, 1000UL}) {
     std::vector<float> a(count + 1, -1);
@@ -34,7 +36,5 @@ TEST_P(MachineCeiling, ArithmeticIsInProportionToRoundsAndIsDone) {
   multiply_and_add(5000, sink);
   EXPECT_NEAR(sink, lanes_and_chains, 0.01 * lanes_and_chains);
 }
-
-VANTAGE_ON_EVERY_TARGET(MachineCeiling);
 
 }  // namespace vantage::kernels::machine_ceiling_test

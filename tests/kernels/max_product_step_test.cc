@@ -12,6 +12,8 @@
 
 namespace vantage::kernels::max_product_step_test {
 
+VANTAGE_ON_EVERY_TARGET(MaxProductStep);
+
 using EnergyStarRows = CellStarRows<FixedEnergy>;
 using Kernel = void (*)(const MaxProductRow&);
 
@@ -447,7 +449,5 @@ TEST(MaxProductWork, HoldsColumnsAndTheirMargins) {
   EXPECT_EQ(max_product_work_cells(48, 1), 16 * (48 + 2 * 16));
   EXPECT_EQ(max_product_work_cells(304, 1, 3), 6 * (304 + 4 * 16));
 }
-
-VANTAGE_ON_EVERY_TARGET(MaxProductStep);
 
 }  // namespace vantage::kernels::max_product_step_test

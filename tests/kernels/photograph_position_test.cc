@@ -5,6 +5,8 @@
 
 namespace vantage::kernels::photograph_position_test {
 
+VANTAGE_ON_EVERY_TARGET(PhotographPositionTargets);
+
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr int kSizes[][2] = {{1, 1}, {2, 1}, {1, 7}, {2, 2}, {13, 5}, {37, 29}};
 
@@ -169,7 +171,5 @@ TEST_P(PhotographPositionTargets, EqualsTheReference) {
     }
   }
 }
-
-VANTAGE_ON_EVERY_TARGET(PhotographPositionTargets);
 
 }  // namespace vantage::kernels::photograph_position_test

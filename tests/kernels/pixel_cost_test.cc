@@ -64,9 +64,7 @@ void expect_near(const GreyPairs& row, const std::vector<float>& cells, double r
 
 TEST_P(PixelCost, SquaredDifference) {
   for_each_feature_rows<float, 1>(draw_grey, [](const GreyPairs& row) {
-    const auto cells = equal_cells(
-        cell_count(row), [&](float* out) { squared_row(row, out); },
-        [&](float* out) { squared_row_ref(row, out); });
+    const auto cells = equal_rows<float>(cell_count(row), squared_row, squared_row_ref, row);
     expect_near(row, cells, 4e-7, 1e-5, [&](int j, int i) { return mean(row, j, i, squared); });
   });
 }
@@ -74,9 +72,8 @@ TEST_P(PixelCost, SquaredDifference) {
 TEST_P(PixelCost, AbsoluteDifference) {
   for (const float truncation : {std::numeric_limits<float>::infinity(), 20.0F, .5F}) {
     for_each_feature_rows<float, 1>(draw_grey, [&](const GreyPairs& row) {
-      const auto cells = equal_cells(
-          cell_count(row), [&](float* out) { absolute_row(row, truncation, out); },
-          [&](float* out) { absolute_row_ref(row, truncation, out); });
+      const auto cells =
+          equal_rows<float>(cell_count(row), absolute_row, absolute_row_ref, row, truncation);
       expect_near(row, cells, 4e-7, 1e-5, [&](int j, int i) {
         return mean(row, j, i, [&](double a, double b) {
           return std::min<double>(std::abs(a - b), truncation);
@@ -88,9 +85,7 @@ TEST_P(PixelCost, AbsoluteDifference) {
 
 TEST_P(PixelCost, SamplingInsensitiveDifference) {
   for_each_feature_rows<float, 3>(draw_grey, [](const SampledPairs& row) {
-    equal_cells(
-        cell_count(row), [&](float* out) { sampling_insensitive_row(row, out); },
-        [&](float* out) { sampling_insensitive_row_ref(row, out); });
+    equal_rows<float>(cell_count(row), sampling_insensitive_row, sampling_insensitive_row_ref, row);
   });
 }
 
@@ -154,9 +149,8 @@ TEST_P(PixelCost, ContaminatedEnergy) {
     const auto parameters = ContaminatedGaussian::of(model.sigma, model.epsilon);
     const Model in_force{model.sigma, parameters.epsilon};
     for_each_feature_rows<float, 1>(draw_grey, [&](const GreyPairs& row) {
-      const auto cells = equal_cells(
-          cell_count(row), [&](float* out) { contaminated_energy_row(row, parameters, out); },
-          [&](float* out) { contaminated_energy_row_ref(row, parameters, out); });
+      const auto cells = equal_rows<float>(cell_count(row), contaminated_energy_row,
+                                           contaminated_energy_row_ref, row, parameters);
       // The argument of the logarithm carries the error of the residual over σ².
       expect_near(row, cells, 4e-6, 4e-7, [&](int j, int i) {
         return mean(row, j, i, [&](double a, double b) {
@@ -172,9 +166,8 @@ TEST_P(PixelCost, ContaminatedLikelihood) {
     const auto parameters = ContaminatedGaussian::of(model.sigma, model.epsilon);
     const Model in_force{model.sigma, parameters.epsilon};
     for_each_feature_rows<float, 1>(draw_grey, [&](const GreyPairs& row) {
-      const auto cells = equal_cells(
-          cell_count(row), [&](float* out) { contaminated_likelihood_row(row, parameters, out); },
-          [&](float* out) { contaminated_likelihood_row_ref(row, parameters, out); });
+      const auto cells = equal_rows<float>(cell_count(row), contaminated_likelihood_row,
+                                           contaminated_likelihood_row_ref, row, parameters);
       expect_near(row, cells, 4e-7, 4e-7, [&](int j, int i) {
         return i < row.count ? measurement(in_force, mean(row, j, i, squared)) : 0;
       });
@@ -191,7 +184,7 @@ TEST_P(PixelCost, LikelihoodOfCosts) {
       const CellExtent row{columns, lanes, random_int(random, 1, lanes)};
       std::vector<float> costs(static_cast<std::size_t>(columns * lanes));
       std::generate(costs.begin(), costs.end(), [&] { return draw_grey(random) / 8; });
-      const auto cells = equal_cells(
+      const auto cells = equal_rows<float>(
           costs.size(),
           [&](float* out) {
             std::copy(costs.begin(), costs.end(), out);
@@ -224,8 +217,8 @@ TEST_P(PixelCost, LikelihoodsOfEnergies) {
         kernel(row, out);
       };
     };
-    const auto cells =
-        equal_cells(energies.size(), run(likelihood_of_energies), run(likelihood_of_energies_ref));
+    const auto cells = equal_rows<float>(energies.size(), run(likelihood_of_energies),
+                                         run(likelihood_of_energies_ref));
     for (std::size_t k = 0; k < energies.size(); ++k) {
       const bool is_candidate = static_cast<int>(k) % lanes < count;
       ASSERT_NEAR(cells[k], is_candidate ? std::exp(-static_cast<double>(energies[k])) : 0, 1e-6);

@@ -75,9 +75,7 @@ std::array<float, kMaxRayCensusDistances> likelihoods() {
 TEST_P(RayCensus, HammingDistance) {
   for_each_cell(
       [](const RayCensusPairs& row) {
-        return equal_cells(
-            cell_count(row), [&](float* out) { ray_hamming_row(row, out); },
-            [&](float* out) { ray_hamming_row_ref(row, out); });
+        return equal_rows<float>(cell_count(row), ray_hamming_row, ray_hamming_row_ref, row);
       },
       [](const RayCensusPairs& row, int j, int i, float cell) {
         ASSERT_FLOAT_EQ(cell, static_cast<float>(distance(row, j, i)) /
@@ -94,9 +92,8 @@ TEST_P(RayCensus, LikelihoodsAreTheTables) {
   for_each_cell(
       [&](RayCensusPairs row) {
         row.channels = 1;
-        return equal_cells(
-            cell_count(row), [&](float* out) { ray_census_likelihood_row(row, table, out); },
-            [&](float* out) { ray_census_likelihood_row_ref(row, table, out); });
+        return equal_rows<float>(cell_count(row), ray_census_likelihood_row,
+                                 ray_census_likelihood_row_ref, row, table);
       },
       [&](RayCensusPairs row, int j, int i, float cell) {
         row.channels = 1;

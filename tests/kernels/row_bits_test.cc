@@ -5,7 +5,6 @@
 namespace vantage::kernels::row_bits_test {
 
 using Bits = std::vector<std::uint64_t>;
-constexpr std::uint64_t kSentinel = 0xA5A5A5A5A5A5A5A5U;
 
 VANTAGE_ON_EVERY_TARGET(RowBits);
 
@@ -18,18 +17,6 @@ Bits packed(const std::vector<bool>& answers) {
     }
   }
   return words;
-}
-
-/// What a function and its reference write, which must be the same and nothing else.
-template <typename Function, typename Reference>
-Bits written(int width, const Function& function, const Reference& reference) {
-  GuardedRow<std::uint64_t> bits(static_cast<std::size_t>(row_words(width)), 1, kSentinel);
-  GuardedRow<std::uint64_t> expected(static_cast<std::size_t>(row_words(width)), 1, kSentinel);
-  function(bits.data());
-  reference(expected.data());
-  EXPECT_TRUE(bits.intact());
-  EXPECT_EQ(bits.values(), expected.values());
-  return bits.values();
 }
 
 TEST_P(RowBits, NearIsADifferenceUpToTheLimit) {
@@ -49,14 +36,10 @@ TEST_P(RowBits, NearIsADifferenceUpToTheLimit) {
       }
       is_near.push_back(std::abs(a[x] - b[x]) <= 1.25F);
     }
-    ASSERT_EQ(
-        written(
-            width,
-            [&](std::uint64_t* bits) { near_bits_row(a.data(), b.data(), 1.25F, width, bits); },
-            [&](std::uint64_t* bits) {
-              near_bits_row_ref(a.data(), b.data(), 1.25F, width, bits);
-            }),
-        packed(is_near))
+    const auto words = static_cast<std::size_t>(row_words(width));
+    ASSERT_EQ(equal_rows<std::uint64_t>(words, near_bits_row, near_bits_row_ref, a.data(), b.data(),
+                                        1.25F, width),
+              packed(is_near))
         << "width " << width;
   }
 }
@@ -70,10 +53,10 @@ TEST_P(RowBits, ZeroIsNothingElse) {
       values[x] = static_cast<std::uint8_t>(random() % 2 == 0 ? 0 : 1U << (random() % 8));
       is_zero.push_back(values[x] == 0);
     }
-    ASSERT_EQ(written(
-                  width, [&](std::uint64_t* bits) { zero_bits_row(values.data(), width, bits); },
-                  [&](std::uint64_t* bits) { zero_bits_row_ref(values.data(), width, bits); }),
-              packed(is_zero))
+    const auto words = static_cast<std::size_t>(row_words(width));
+    ASSERT_EQ(
+        equal_rows<std::uint64_t>(words, zero_bits_row, zero_bits_row_ref, values.data(), width),
+        packed(is_zero))
         << "width " << width;
   }
 }

@@ -4,6 +4,8 @@
 
 namespace vantage::kernels::scanline_test {
 
+VANTAGE_ON_EVERY_TARGET(Scanline);
+
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A row of energies, its candidates, and the costs of changes.
@@ -149,7 +151,5 @@ TEST_P(Scanline, PrefersSmallChangesAndSmallCandidatesOfEqualPaths) {
   scene.cells[2] = scene.cells[static_cast<std::size_t>(scene.row.geometry.lanes()) + 1] = 1;
   EXPECT_EQ(result_of(scene, scanline_winners_row).winners, (std::vector<std::int32_t>{2, 1, 1}));
 }
-
-VANTAGE_ON_EVERY_TARGET(Scanline);
 
 }  // namespace vantage::kernels::scanline_test

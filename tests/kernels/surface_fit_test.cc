@@ -320,12 +320,9 @@ TEST_P(SurfaceFit, SamplesAreNearestSteps) {
   px[2] = 30.5F + 1.5F / 64;
   px[3] = 1e6F;
   px[4] = -1e6F;
-  GuardedRow<std::int16_t> simd(px.size(), 1, -99);
-  surface_sample_row(px.data(), unmatched.data(), 77, kFormat, simd.data());
-  ASSERT_TRUE(simd.intact());
-  std::vector<std::int16_t> reference(px.size());
-  surface_sample_row_ref(px.data(), unmatched.data(), 77, kFormat, reference.data());
-  EXPECT_EQ(simd.values(), reference);
+  const auto reference =
+      equal_rows<std::int16_t>(px.size(), surface_sample_row, surface_sample_row_ref, px.data(),
+                               unmatched.data(), 77, kFormat);
   EXPECT_EQ(std::vector<int>(reference.begin(), reference.begin() + 5),
             (std::vector<int>{kNoSurface, 0, 2, 31359, -31359}));
   EXPECT_EQ(reference[39], std::lround(31.7));
