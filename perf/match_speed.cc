@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "engine/matching/candidate_geometry.h"
-#include "engine/matching/match_chain.h"
+#include "engine/matching/chain/candidate_geometry.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
 #include "perf/bench_pair.h"

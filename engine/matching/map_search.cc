@@ -1,5 +1,5 @@
 #include "engine/matching/map_search.h"
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/chain/candidate_geometry.h"
 
 #include <fmt/format.h>
 

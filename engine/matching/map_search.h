@@ -5,10 +5,10 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
-#include "engine/matching/coarse_to_fine.h"
-#include "engine/matching/match_chain.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
 #include "engine/matching/volume/volume_request.h"
 #include "engine/matching/volume/volume_writer.h"
 #include "kernels/candidates.h"

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "engine/matching/coarse_levels.h"
 #include "engine/matching/costs/cost_image.h"
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/reduced_matcher.h"
+#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
 #include "engine/matching/selection/symmetric_energies.h"
 #include "engine/rectification/epipolar_grid.h"
 

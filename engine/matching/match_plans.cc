@@ -1,4 +1,4 @@
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/stereo_matcher_parts.h"
 

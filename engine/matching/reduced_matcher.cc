@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/levels/energy_format.h"
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/stage_clock.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/stage_clock.h"
 #include "engine/matching/stereo_matcher_parts.h"
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/match_memory.h"
 #include "engine/matching/selection/symmetric_energies.h"

@@ -7,9 +7,9 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/matching/coarse_levels.h"
 #include "engine/matching/match_memory.h"
 #include "engine/matching/reduced_matcher.h"
+#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/three_step_synthesizer.h"

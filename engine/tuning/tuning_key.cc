@@ -7,9 +7,9 @@
 
 #include "engine/build_info.h"
 #include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/levels/energy_format.h"
-#include "engine/matching/match_chain.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/simd.h"
 #include "engine/thread_placement.h"

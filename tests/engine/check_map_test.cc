@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "engine/matching/candidate_geometry.h"
-#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/chain/candidate_geometry.h"
+#include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/windows/window_level.h"
 #include "engine/refinement/refinement.h"

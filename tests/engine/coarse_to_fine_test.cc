@@ -1,6 +1,6 @@
 // Matching with several levels: against the plain transcription, and what it must not depend on.
-#include "engine/matching/coarse_to_fine.h"
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
+#include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/levels/level_extents.h"
 
 #include <gtest/gtest.h>

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/chain/candidate_geometry.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/levels/level_stages.h"
-#include "engine/matching/match_chain.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <tuple>
 
-#include "engine/matching/match_chain.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/oracle_comparison.h"

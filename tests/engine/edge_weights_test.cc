@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/matching/aggregation/aggregation_table.h"
-#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
 #include "tests/engine/table_keys.h"
 
 namespace vantage {

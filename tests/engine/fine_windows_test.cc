@@ -1,5 +1,5 @@
 // The finest levels of a search of whole images, in windows (EQUATIONS §3.13).
-#include "engine/matching/fine_windows.h"
+#include "engine/matching/search/coarse_to_fine/fine_windows.h"
 
 #include <gtest/gtest.h>
 

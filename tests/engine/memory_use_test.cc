@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/matching/coarse_levels.h"
+#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/frame_memory.h"
 #include "tests/engine/oracle_comparison.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/matching/candidate_geometry.h"
-#include "engine/matching/match_chain.h"
+#include "engine/matching/chain/candidate_geometry.h"
+#include "engine/matching/chain/match_chain.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/identical_maps.h"

@@ -1,5 +1,5 @@
 #include "engine/matching/stereo_matcher.h"
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/chain/candidate_geometry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "engine/error.h"
-#include "engine/matching/match_chain.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/simd.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"

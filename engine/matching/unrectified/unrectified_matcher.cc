@@ -9,7 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/matching/aggregation/edge_weights.h"
-#include "engine/matching/candidate_geometry.h"
+#include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/costs/cost_image.h"
 #include "engine/matching/map_search.h"
 #include "engine/matching/match_inputs.h"

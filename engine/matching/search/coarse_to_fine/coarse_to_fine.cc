@@ -1,4 +1,4 @@
-#include "engine/matching/coarse_to_fine.h"
+#include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "engine/matching/levels/smooth_tiles.h"
 #include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
-#include "engine/matching/window_volume.h"
+#include "engine/matching/search/coarse_to_fine/window_volume.h"
 #include "scheduler/trace.h"
 
 namespace vantage {

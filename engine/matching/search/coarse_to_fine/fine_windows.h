@@ -8,7 +8,7 @@
 #include "engine/image/disparity_maps.h"
 #include "engine/image/image.h"
 #include "engine/image/tile_mask.h"
-#include "engine/matching/match_chain.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "engine/matching/windows/coarse_beliefs.h"
 #include "kernels/candidates.h"

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/costs/stage_disparity_prior.h"
 #include "engine/matching/costs/stage_displacement_cost.h"
@@ -11,7 +12,6 @@
 #include "engine/matching/levels/stage_fixed_energies.h"
 #include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
-#include "engine/matching/match_chain.h"
 
 // The costs of MatchChain.
 

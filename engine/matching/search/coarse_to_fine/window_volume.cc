@@ -1,4 +1,4 @@
-#include "engine/matching/window_volume.h"
+#include "engine/matching/search/coarse_to_fine/window_volume.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,9 +6,9 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
-#include "engine/matching/coarse_levels.h"
-#include "engine/matching/match_chain.h"
-#include "engine/matching/searched_parts.h"
+#include "engine/matching/chain/match_chain.h"
+#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
+#include "engine/matching/search/coarse_to_fine/searched_parts.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"
 

@@ -1,11 +1,11 @@
-#include "engine/matching/coarse_levels.h"
+#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
 
 #include <algorithm>
 #include <optional>
 
 #include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/levels/level_extents.h"
-#include "engine/matching/match_chain.h"
 
 namespace vantage {
 

@@ -1,4 +1,4 @@
-#include "engine/matching/searched_parts.h"
+#include "engine/matching/search/coarse_to_fine/searched_parts.h"
 
 #include <algorithm>
 

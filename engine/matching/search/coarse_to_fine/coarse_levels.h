@@ -8,11 +8,11 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
-#include "engine/matching/fine_windows.h"
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/level_bands.h"
 #include "engine/matching/levels/level_volume.h"
 #include "engine/matching/parameters/method_parameters.h"
+#include "engine/matching/search/coarse_to_fine/fine_windows.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"
 

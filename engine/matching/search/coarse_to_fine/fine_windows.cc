@@ -1,4 +1,4 @@
-#include "engine/matching/fine_windows.h"
+#include "engine/matching/search/coarse_to_fine/fine_windows.h"
 
 #include <algorithm>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "engine/matching/match_chain.h"
+#include "engine/matching/chain/match_chain.h"
 
 #include <cstddef>
 #include <utility>
