@@ -15,10 +15,10 @@
 #include "apps/inputs/input_limits.h"
 #include "apps/process/process_setup.h"
 #include "apps/process/tell.h"
-#include "apps/settings/setting_value.h"
 #include "apps/settings/suggestions.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
+#include "engine/options/setting_value.h"
 #include "engine/quoted_text.h"
 #include "scheduler/interruption.h"
 
@@ -47,14 +47,14 @@ std::string help() {
 
 /// All commands, for programs; 'vantage COMMAND --help-json' has the options.
 std::string help_json() {
-  vantage::apps::SettingValue list = vantage::apps::SettingValue::array();
+  vantage::SettingValue list = vantage::SettingValue::array();
   for (const Command& command : commands()) {
     list.push_back({{"name", command.name}, {"title", command.summary}});
   }
-  const vantage::apps::SettingValue document = {{"version", vantage::build_info().version},
-                                                {"summary", kSummary},
-                                                {"exit_codes", kExitCodes},
-                                                {"commands", list}};
+  const vantage::SettingValue document = {{"version", vantage::build_info().version},
+                                          {"summary", kSummary},
+                                          {"exit_codes", kExitCodes},
+                                          {"commands", list}};
   return document.dump(2) + '\n';
 }
 
@@ -62,7 +62,7 @@ std::string help_json() {
 /// none.
 const Command* take_command(Arguments& arguments) {
   for (const Command& command : commands()) {
-    const Arguments words = vantage::apps::split(command.name, ' ');
+    const Arguments words = vantage::split(command.name, ' ');
     if (arguments.size() >= words.size() &&
         std::equal(words.begin(), words.end(), arguments.begin())) {
       arguments.erase(arguments.begin(), arguments.begin() + static_cast<long>(words.size()));
@@ -77,7 +77,7 @@ std::string unknown_command(const Arguments& arguments) {
   std::string kinds;
   for (const Command& command : commands()) {
     names.emplace_back(command.name);
-    const Arguments words = vantage::apps::split(command.name, ' ');
+    const Arguments words = vantage::split(command.name, ' ');
     if (words.size() > 1 && words.front() == arguments.front()) {
       kinds += (kinds.empty() ? "" : " or ") + fmt::format("'vantage {}'", command.name);
     }

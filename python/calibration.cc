@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/inputs/rig_scale.h"
+#include "engine/options/rig_scale.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
@@ -138,7 +138,7 @@ StereoCalibration of_depth_matrix(const py::object& object) {
 /// Rectified cameras of a rig of which little is known.
 StereoCalibration make_rig(double focal_px, double baseline_metres, const py::object& given_size,
                            double doffs_px, const std::optional<std::pair<double, double>>& point) {
-  const apps::RigScale rig{
+  const RigScale rig{
       .focal_length_px = focal_px, .baseline_m = baseline_metres, .doffs_px = doffs_px};
   rig.validate("");
   const std::optional<ImageSize> size = size_of(given_size);
@@ -174,7 +174,7 @@ StereoCalibration load_calibration(const py::object& path, bool already_rectifie
     }
     cameras = kitti_cameras == std::array{0, 1} ? KittiCameras::kGrey : KittiCameras::kColour;
   }
-  apps::RigScale rig;
+  RigScale rig;
   rig.images_are_rectified = already_rectified;
   const std::string file = path_of(path);
   StereoCalibration calibration = without_gil([&] { return rig.read(file, cameras); });

@@ -15,9 +15,9 @@ namespace py = pybind11;
 MatchSetup match_setup(py::dict keywords) {
   MatchSetup setup;
   setup.execution = &take_execution(keywords);
-  apps::Settings settings("", "");
-  apps::add_reference_setting(settings, setup.options.reference);
-  apps::add_match_settings(settings, setup.options);
+  Settings settings;
+  add_reference_setting(settings, setup.options.reference);
+  add_match_settings(settings, setup.options);
   set_options(settings, keywords);
   return setup;
 }
@@ -99,10 +99,10 @@ std::unique_ptr<MatchResult> Matcher::compute(const ImageArguments& arguments,
 }
 
 py::dict Matcher::options() {
-  apps::Settings settings("", "");
-  apps::add_reference_setting(settings, setup_.options.reference);
-  apps::add_match_settings(settings, setup_.options);
-  const apps::SettingValue values = settings.values();
+  Settings settings;
+  add_reference_setting(settings, setup_.options.reference);
+  add_match_settings(settings, setup_.options);
+  const SettingValue values = settings.values();
   py::dict result;
   for (const auto& [name, value] : values.items()) {
     std::string keyword = name;
@@ -115,7 +115,7 @@ py::dict Matcher::options() {
 std::string Matcher::text() const {
   return fmt::format(
       "<vantage.Matcher: {}, disparities {}>", setup_.options.chosen(),
-      setup_.options.disparities_auto ? "auto" : apps::to_text(setup_.options.disparities));
+      setup_.options.disparities_auto ? "auto" : to_text(setup_.options.disparities));
 }
 
 void bind_matcher(py::module_& module) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/settings/match_settings.h"
+#include "engine/options/match_settings.h"
 #include "engine/vantage.h"
 #include "python/match_result.h"
 #include "python/unrectified_pairs.h"
@@ -16,7 +16,7 @@ namespace vantage::python {
 
 /// Options of matching, and the threads to use.
 struct MatchSetup {
-  MatchOptions options = apps::options_with_found_range();
+  MatchOptions options = options_with_found_range();
   Execution* execution = nullptr;
 };
 

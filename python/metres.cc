@@ -5,8 +5,8 @@
 #include <pybind11/eigen.h>
 #include <pybind11/stl.h>
 
-#include "apps/settings/match_settings.h"
-#include "apps/settings/metric_settings.h"
+#include "engine/options/match_settings.h"
+#include "engine/options/metric_settings.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/view_geometry/depth_resolution.h"
 #include "python/arrays.h"
@@ -18,18 +18,18 @@ namespace py = pybind11;
 
 MetricOptions metric_options(MetricOutput output, const py::dict& keywords) {
   MetricOptions options;
-  apps::Settings settings("", "");
-  apps::add_rig_scale_settings(settings, options.rig);
+  Settings settings;
+  add_rig_scale_settings(settings, options.rig);
   if (output == MetricOutput::kPoints) {
-    apps::add_cloud_settings(settings, options.cloud);
+    add_cloud_settings(settings, options.cloud);
   } else if (output == MetricOutput::kDepth) {
-    apps::add_max_depth_setting(settings, options.cloud.max_depth);
+    add_max_depth_setting(settings, options.cloud.max_depth);
   } else {
-    apps::add_disparity_resolution_setting(settings, options.disparity_resolution_px);
+    add_disparity_resolution_setting(settings, options.disparity_resolution_px);
   }
   set_options(settings, keywords);
   options.cloud.validate();
-  apps::require_disparity_resolution(options.disparity_resolution_px);
+  require_disparity_resolution(options.disparity_resolution_px);
   if (options.rig.images_are_rectified) {
     throw UsageError(
         "already-rectified is of files, expected Calibration.load(path, already_rectified=True)");
@@ -102,8 +102,8 @@ constexpr double kFractionalStep_px = 0.1;
 /// The `reference` of keyword arguments, taken out of them.
 Side take_reference(py::dict& keywords) {
   MatchOptions options;
-  apps::Settings settings("", "");
-  apps::add_reference_setting(settings, options.reference);
+  Settings settings;
+  add_reference_setting(settings, options.reference);
   py::dict given;
   if (keywords.contains("reference")) {
     given["reference"] = keywords.attr("pop")("reference");
@@ -194,7 +194,7 @@ py::array to_points(const py::object& disparity, const StereoCalibration& calibr
                     py::dict keywords) {
   Execution& execution = take_execution(keywords);
   const Side side = take_reference(keywords);
-  apps::Settings none("", "");
+  Settings none;
   set_options(none, keywords);
   const DisparityMap map = map_from(disparity, "disparity");
   if (!calibration.is_rectified) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/inputs/rig_scale.h"
+#include "engine/options/rig_scale.h"
 #include "engine/vantage.h"
 #include "python/point_clouds.h"
 
@@ -16,7 +16,7 @@ enum class MetricOutput { kDepth, kDepthResolution, kPoints };
 
 /// Options of that, as 'vantage match' has them.
 struct MetricOptions {
-  apps::RigScale rig;
+  RigScale rig;
   CloudOptions cloud;
   std::optional<double> disparity_resolution_px;
 };

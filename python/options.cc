@@ -8,14 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/settings/option_groups.h"
-#include "apps/settings/suggestions.h"
 #include "engine/error.h"
+#include "engine/options/execution_settings.h"
+#include "engine/options/nearest_name.h"
 #include "engine/quoted_text.h"
 
 namespace vantage::python {
 namespace py = pybind11;
-using apps::SettingValue;
 namespace {
 
 std::string option_name(std::string name) {
@@ -88,7 +87,7 @@ SettingValue to_setting(const std::string& name, const py::handle& object) {
 
 }  // namespace
 
-void set_options(apps::Settings& settings, const py::dict& options) {
+void set_options(Settings& settings, const py::dict& options) {
   SettingValue values = SettingValue::object();
   const SettingValue known = settings.values();
   for (const auto& [key, value] : options) {
@@ -99,7 +98,7 @@ void set_options(apps::Settings& settings, const py::dict& options) {
       for (const auto& [known_name, unused] : known.items()) {
         names.push_back(known_name);
       }
-      const std::string nearest = apps::nearest_name(name, names);
+      const std::string nearest = nearest_name(name, names);
       throw UsageError(fmt::format("unknown option '{}'{}", quotable(given),
                                    nearest.empty() ? "" : ", did you mean " + nearest + "?"));
     }
@@ -111,17 +110,15 @@ void set_options(apps::Settings& settings, const py::dict& options) {
 }
 
 Execution& take_execution(py::dict& options) {
-  apps::CommonOptions common;
-  apps::Settings settings("", "");
-  apps::add_common_settings(settings, common);
+  ExecutionOptions chosen;
+  Settings settings;
+  add_execution_settings(settings, chosen);
   const SettingValue defaults = settings.values();
   py::dict given;
   for (const auto& [name, unused] : defaults.items()) {
     std::string keyword = name;
     std::replace(keyword.begin(), keyword.end(), '-', '_');
-    // Of commands, not of calls.
-    const bool is_of_call = name != "report" && name != "trace" && name != "quiet" && name != "isa";
-    if (is_of_call && options.contains(keyword.c_str())) {
+    if (options.contains(keyword.c_str())) {
       given[keyword.c_str()] = options.attr("pop")(keyword);
     }
   }
@@ -134,9 +131,24 @@ Execution& take_execution(py::dict& options) {
   static std::map<std::string, Execution*> executions;
   Execution*& execution = executions[values.dump()];
   if (execution == nullptr) {
-    execution = new Execution(common.execution);
+    execution = new Execution(chosen);
   }
   return *execution;
+}
+
+SettingValue read_toml(const std::string& path) {
+  try {
+    const py::object file = py::module_::import("builtins").attr("open")(path, "rb");
+    const py::object document = py::module_::import("tomllib").attr("load")(file);
+    file.attr("close")();
+    return to_value(document);
+  } catch (const py::error_already_set& error) {
+    const std::string problem = py::str(error.value());
+    if (error.matches(PyExc_OSError)) {
+      throw Error(fmt::format("{}: cannot be read, expected a TOML file", path));
+    }
+    throw UsageError(fmt::format("{}: not TOML: {}", path, quotable(problem)));
+  }
 }
 
 py::object to_python(const SettingValue& value) {

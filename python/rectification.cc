@@ -70,7 +70,7 @@ py::tuple to_rectify(const py::object& left, const py::object& right,
                      const std::optional<StereoCalibration>& calibration, double kept_outline,
                      bool bgr, py::dict keywords) {
   Execution& execution = take_execution(keywords);
-  apps::Settings none("", "");
+  Settings none;
   set_options(none, keywords);
   const RectificationOptions options{kept_outline};
   options.validate();

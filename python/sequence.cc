@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "apps/inputs/frame_step_setting.h"
-#include "apps/reports/flicker_values.h"
-#include "apps/run/sequence_job.h"
-#include "apps/run/sequence_session.h"
-#include "apps/settings/option_groups.h"
+#include "engine/jobs/flicker_values.h"
+#include "engine/jobs/sequence_job.h"
+#include "engine/jobs/sequence_session.h"
+#include "engine/options/frame_step_setting.h"
+#include "engine/options/synthesis_settings.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/sequence/frame_iterator.h"
 #include "engine/sequence/sequence_range.h"
@@ -41,15 +41,15 @@ void require_outputs_of_frames(const SequenceOptions& options) {
   for (const auto& [output, instead] : kNotOfFrames) {
     if (options.saves(output)) {
       throw UsageError(fmt::format("save holds {}, expected {} instead",
-                                   apps::output_names({output})[0].get<std::string>(), instead));
+                                   output_names({output})[0].get<std::string>(), instead));
     }
   }
 }
 
 /// What a user asked for, opened and examined. Thread rule: pure, but for the source.
 struct OpenSequence {
-  apps::SequenceJob job;
-  apps::SequenceSession session;
+  SequenceJob job;
+  SequenceSession session;
   std::optional<ShotTable> shots;
   Execution* execution = nullptr;
   int in_flight = 1;
@@ -71,25 +71,24 @@ struct OpenSequence {
   }
 };
 
-bool knows_metres(const apps::SequenceJob& job,
-                  const std::optional<StereoCalibration>& calibration) {
+bool knows_metres(const SequenceJob& job, const std::optional<StereoCalibration>& calibration) {
   return calibration ? job.rig.unit_of(*calibration).has_value()
                      : job.rig.focal_length_px && job.rig.baseline_m;
 }
 
 void open(const std::optional<StereoCalibration>& calibration, OpenSequence& opened) {
-  apps::SequenceJob& job = opened.job;
-  apps::SequenceSession& session = opened.session;
+  SequenceJob& job = opened.job;
+  SequenceSession& session = opened.session;
   Execution& execution = *opened.execution;
-  apps::open_source(job, session);
+  open_source(job, session);
   FramePair first;
-  apps::read_first_pair(*session.pairs, first);
+  read_first_pair(*session.pairs, first);
   const bool is_metric = job.sequence.unrectified != UnrectifiedSearch::kOnPhotographs &&
                          knows_metres(job, calibration);
-  apps::prepare_pairs(job, calibration, is_metric, first, execution, session);
+  prepare_pairs(job, calibration, is_metric, first, execution, session);
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   MatchOptions& match = job.sequence.match;
-  apps::use_ranges(session.columns, match);
+  use_ranges(session.columns, match);
   if (match.disparities_auto) {
     match.disparities =
         require_disparity_range(find_sequence_range(*session.pairs, rectify, execution));
@@ -165,11 +164,11 @@ class FrameLoop {
     return frames;
   }
   /// Of all frames so far, as the report of a run has it.
-  [[nodiscard]] py::object flicker() const { return to_python(apps::flicker_values(flicker_)); }
+  [[nodiscard]] py::object flicker() const { return to_python(flicker_values(flicker_)); }
 
  private:
   SequenceRun run_of_source() const {
-    const apps::SequenceSession& session = opened_->session;
+    const SequenceSession& session = opened_->session;
     return session.run(opened_->job, *source_, opened_->shots ? &*opened_->shots : nullptr,
                        opened_->in_flight);
   }
@@ -222,7 +221,7 @@ class FrameLoop {
         *opened_->execution, MatchedImages(std::move(left), std::move(right)),
         std::move(computed)));
     add_views(slot, found);
-    found["flicker"] = to_python(apps::flicker_values(frame.flicker));
+    found["flicker"] = to_python(flicker_values(frame.flicker));
     found["share_reused"] = slot.match.searched_share
                                 ? py::object(py::float_(1 - *slot.match.searched_share))
                                 : py::none();
@@ -263,32 +262,32 @@ class Sequence {
   Sequence(const std::optional<StereoCalibration>& calibration, bool is_unrectified,
            py::dict keywords)
       : opened_(std::make_shared<OpenSequence>()) {
-    apps::SequenceJob& job = opened_->job;
+    SequenceJob& job = opened_->job;
     opened_->execution = &take_execution(keywords);
-    apps::Settings settings("", "");
-    apps::add_input_settings(settings, job);
+    Settings settings;
+    add_input_settings(settings, job);
     settings.flag("rectified-pixels", job.rectified_pixels, "");
-    apps::add_save_setting(settings, job);
-    apps::add_picture_settings(settings, job);
-    apps::add_rig_scale_settings(settings, job.rig);
-    apps::add_poses_setting(settings, job);
-    apps::add_steadiness_settings(settings, job);
-    apps::add_frames_setting(settings, job.frames, job.step_of_frames);
-    apps::add_chunk_frames_setting(settings, job);
-    apps::add_in_flight_setting(settings, job);
+    add_save_setting(settings, job);
+    add_picture_settings(settings, job);
+    add_rig_scale_settings(settings, job.rig);
+    add_poses_setting(settings, job);
+    add_steadiness_settings(settings, job);
+    add_frames_setting(settings, job.frames, job.step_of_frames);
+    add_chunk_frames_setting(settings, job);
+    add_in_flight_setting(settings, job);
     settings.flag("keep-going", job.keep_going, "");
-    apps::add_reference_setting(settings, job.sequence.match.reference);
-    apps::add_match_settings(settings, job.sequence.match);
-    apps::add_synthesis_settings(settings, job.sequence.synthesis);
+    add_reference_setting(settings, job.sequence.match.reference);
+    add_match_settings(settings, job.sequence.match);
+    add_synthesis_settings(settings, job.sequence.synthesis);
     set_options(settings, keywords);
     if (calibration) {
       (is_unrectified ? job.unrectified : job.calibration) =
           calibration->file.empty() ? "calibration" : calibration->file;
     }
-    apps::read_pose_files(job.views);
-    apps::complete_sequence(job, false);
+    read_pose_files(job.views, read_toml);
+    complete_sequence(job, false);
     require_outputs_of_frames(job.sequence);
-    apps::check_sequence(job, settings, false);
+    check_sequence(job, settings, false);
     if (job.input.stereo == "-") {
       throw UsageError("stereo is -, expected a file: 'vantage run' reads standard input");
     }

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "apps/settings/match_settings.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/wanted_views.h"
+#include "engine/options/match_settings.h"
+#include "engine/options/synthesis_settings.h"
+#include "engine/options/wanted_views.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
@@ -20,10 +20,10 @@ namespace {
 
 /// Everything that a call of synthesize() can set.
 struct ViewSetup {
-  apps::WantedViews views;
+  WantedViews views;
   SynthesisOptions synthesis;
   RectificationOptions rectification;
-  MatchOptions match = apps::options_with_found_range();
+  MatchOptions match = options_with_found_range();
 };
 
 void rectify_pair(const StereoCalibration& calibration, const RectificationOptions& options,
@@ -49,8 +49,8 @@ void require_size(const DisparityMap& map, const Photograph& image, const char* 
 
 std::vector<Photograph> render(const ViewSetup& setup, std::vector<ViewPose>& poses,
                                const PairWithMaps& pair, Execution& execution) {
-  apps::complete_poses(setup.views, pair.cameras ? &*pair.cameras : nullptr, pair.left.width(),
-                       pair.left.height(), poses);
+  complete_poses(setup.views, pair.cameras ? &*pair.cameras : nullptr, pair.left.width(),
+                 pair.left.height(), poses);
   ViewRenderer renderer(pair, setup.synthesis, std::nullopt, execution);
   renderer.check(poses);
   if (poses.size() > 1) {
@@ -71,11 +71,11 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
                     py::dict keywords) {
   ViewSetup setup;
   Execution& execution = take_execution(keywords);
-  apps::Settings settings("", "");
-  apps::add_wanted_views(settings, setup.views);
-  apps::add_synthesis_settings(settings, setup.synthesis);
+  Settings settings;
+  add_wanted_views(settings, setup.views);
+  add_synthesis_settings(settings, setup.synthesis);
   settings.number("kept-outline", setup.rectification.kept_outline, "SHARE", "");
-  apps::add_match_settings(settings, setup.match);
+  add_match_settings(settings, setup.match);
   set_options(settings, keywords);
   setup.synthesis.validate();
   setup.rectification.validate();
@@ -93,7 +93,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
     pair.maps.left.disparity_px = map_from(left_map, "disparity");
     pair.maps.right.disparity_px = map_from(right_map, "right_disparity");
   }
-  std::vector<ViewPose> poses = apps::poses_of(setup.views);
+  std::vector<ViewPose> poses = poses_of(setup.views, read_toml);
   std::vector<Photograph> images = on_threads_of(execution, [&] {
     pair.left = left_pixels.copy();
     pair.right = right_pixels.copy();

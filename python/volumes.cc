@@ -9,7 +9,7 @@
 #include <new>
 #include <utility>
 
-#include "apps/settings/volume_output.h"
+#include "engine/options/volume_output.h"
 #include "engine/out_of_memory.h"
 #include "python/calls.h"
 #include "python/matcher.h"
@@ -110,12 +110,12 @@ py::tuple Matcher::volume(const ImageArguments& arguments, const py::dict& keywo
     }
     max_bytes = given.cast<std::size_t>();
   }
-  apps::VolumeOutput output;
-  apps::Settings settings("", "");
-  apps::add_volume_settings(settings, output);
+  VolumeOutput output;
+  Settings settings;
+  add_volume_settings(settings, output);
   set_options(settings, options);
   output.file = "array";  // there is an output
-  apps::check_volume(output, setup_.options, settings);
+  check_volume(output, setup_.options, settings);
   MatchedImages images = arguments.images();
   MemoryVolume volume(output.rows, max_bytes);
   on_threads_of(*setup_.execution, [&] {

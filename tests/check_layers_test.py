@@ -35,7 +35,8 @@ class CheckLayersTest(PlantedTreeTest):
                 ("scheduler/a.cc", "<fmt/format.h>"),
                 ("engine/a.cc", '"apps/command.h"'), ("engine/a.cc", "<tbb/parallel_for.h>"),
                 ("engine/a.cc", "<omp.h>"), ("engine/deep/a.cc", "<hwloc.h>"),
-                ("engine/a.cc", "<CLI/CLI.hpp>"), ("engine/a.cc", "<linux/perf_event.h>"),
+                ("engine/a.cc", "<CLI/CLI.hpp>"), ("engine/options/a.cc", "<toml++/toml.h>"),
+                ("python/a.cc", '"apps/settings/toml_file.h"'), ("engine/a.cc", "<linux/perf_event.h>"),
                 ("apps/a.cc", '"kernels/box.h"'), ("apps/a.cc", "<opencv2/core.hpp>"),
                 ("apps/a.cc", "<oneapi/tbb/task_arena.h>")]:
             with self.subTest(name=name, include=include):

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "apps/settings/match_settings.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/disparity_io.h"
 #include "engine/matching/range_estimation.h"
+#include "engine/options/match_settings.h"
 
 namespace vantage::apps {
 namespace {

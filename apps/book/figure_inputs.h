@@ -4,9 +4,9 @@
 #include <string>
 
 #include "apps/process/outputs.h"
-#include "apps/settings/settings.h"
 #include "engine/execution.h"
 #include "engine/figures/figure_images.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 

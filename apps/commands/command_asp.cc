@@ -12,8 +12,8 @@
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/image/no_data.h"
 #include "engine/io/maps/disparity_io.h"
@@ -21,6 +21,7 @@
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 namespace {
@@ -153,7 +154,7 @@ int command_asp(const Arguments& arguments) {
       {"left", "right", "disparity", "preset", "disp-min", "disp-max", "sign", "threads", "quiet"},
       {"vantage asp left.tif right.tif disparity.tif",
        "parallel_stereo --stereo-algorithm \"vantage-asp --preset quality\" ..."});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job, settings);

@@ -9,13 +9,14 @@
 #include "apps/process/command_work.h"
 #include "apps/process/outputs.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/evaluation/disparity_evaluation.h"
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/disparity_io.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 namespace {
@@ -174,7 +175,7 @@ int command_eval(const Arguments& arguments) {
        "quiet"},
       {"vantage eval disparity.pfm truth.pfm", "vantage eval disparity.pfm truth.png --scale 4",
        "vantage eval --views view.png photograph.png"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job, settings);

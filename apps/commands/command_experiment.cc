@@ -17,13 +17,14 @@
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/parameter_settings.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/evaluation/method_comparison.h"
 #include "engine/figures/figure_table.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/options/parameter_settings.h"
+#include "engine/options/settings.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/simd.h"
 #include "scheduler/machine.h"
@@ -172,7 +173,7 @@ int command_experiment(const Arguments& arguments) {
        "vantage experiment 6.16 6.17 -o figures",
        "vantage experiment 6.10 --noise 0,4 --methods bayes,membrane -o figures",
        "vantage experiment 6.9 --beta 0.2 -o figures"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   if (job.list) {

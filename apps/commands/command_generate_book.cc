@@ -6,9 +6,10 @@
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/generation/book_pairs.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 namespace {
@@ -83,7 +84,7 @@ int command_generate_book(const Arguments& arguments) {
        "narrow-disparity", "noise", "float", "reference", "seed"},
       {"vantage generate book -o pair", "vantage generate book --width 512 --height 512 -o pair",
        "vantage generate book --noise 5 --seed 2 -o pair"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   job.pair.validate();

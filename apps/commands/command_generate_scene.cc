@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "apps/commands/commands.h"
-#include "apps/inputs/pose_file.h"
 #include "apps/match/generated_files.h"
 #include "apps/process/command_work.h"
 #include "apps/process/interrupt.h"
@@ -12,11 +11,14 @@
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
-#include "apps/settings/wanted_views.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
+#include "apps/settings/toml_file.h"
 #include "engine/error.h"
 #include "engine/generation/layered_scene.h"
+#include "engine/options/pose_file.h"
+#include "engine/options/settings.h"
+#include "engine/options/wanted_views.h"
 
 namespace vantage::apps {
 namespace {
@@ -137,7 +139,7 @@ std::vector<PosedCamera> cameras_of(const SceneJob& job) {
   if (job.pose_file.empty()) {
     return cameras;
   }
-  for (const PoseEntry& entry : read_poses(job.pose_file)) {
+  for (const PoseEntry& entry : read_poses(job.pose_file, read_toml_document)) {
     const auto* camera = std::get_if<PosedCamera>(&entry.pose);
     if (camera == nullptr) {
       throw UsageError(
@@ -211,7 +213,7 @@ int command_generate_scene(const Arguments& arguments) {
        "noise", "seed"},
       {"vantage generate scene -o scene", "vantage generate scene --frames 100 -o sequence",
        "vantage generate scene --view 0.5 --width 1280 --height 720 -o scene"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job, settings);

@@ -5,8 +5,9 @@
 #include <optional>
 
 #include "apps/commands/commands.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
 #include "engine/build_info.h"
+#include "engine/options/settings.h"
 #include "engine/profiling/machine_ceilings.h"
 #include "engine/simd.h"
 #include "scheduler/topology.h"
@@ -109,7 +110,7 @@ int command_info(const Arguments& arguments) {
   settings.flag("json", json, "Write JSON instead of a table");
   settings.flag("measure", measure,
                 "Measure the peak performance of arithmetic, caches and memory (2 seconds)");
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   const BuildInfo build = build_info();

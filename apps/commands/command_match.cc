@@ -17,7 +17,7 @@
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
 #include "apps/settings/applied_tuning.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
 #include "engine/io/images/photograph_io.h"
@@ -26,6 +26,7 @@
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/unrectified/rectified_map.h"
 #include "engine/matching/unrectified/unrectified_matcher.h"
+#include "engine/options/settings.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/stereo_calibration.h"
 
@@ -292,7 +293,7 @@ int command_match(const Arguments& arguments) {
                     "Computes the disparity map of a rectified stereo pair, or of several images "
                     "taken on one line.");
   add_match_job_settings(settings, job);
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job, settings);

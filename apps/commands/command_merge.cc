@@ -8,7 +8,6 @@
 #include "apps/commands/commands.h"
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
-#include "apps/reports/flicker_values.h"
 #include "apps/reports/run_report.h"
 #include "apps/run/film_reports.h"
 #include "apps/run/resumed_run.h"
@@ -16,7 +15,9 @@
 #include "apps/run/run_session.h"
 #include "apps/run/run_settings.h"
 #include "apps/run/verified_run.h"
+#include "apps/settings/command_line.h"
 #include "engine/error.h"
+#include "engine/jobs/flicker_values.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_join.h"
 
@@ -66,7 +67,7 @@ int command_merge(const Arguments& arguments) {
   Settings settings("merge",
                     "Checks that all parts of a run are complete, and joins their videos.");
   add_merge_settings(settings, job);
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   FileChecks files(settings);

@@ -17,9 +17,10 @@
 #include "apps/reports/profile_report.h"
 #include "apps/reports/profile_rounds.h"
 #include "apps/reports/profiled_command.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/options/settings.h"
 #include "engine/profiling/profile_advice.h"
 #include "engine/profiling/profile_comparison.h"
 #include "engine/profiling/profile_figures.h"
@@ -301,7 +302,7 @@ int command_profile(const Arguments& arguments) {
   add_profile_settings(settings, job);
   const std::size_t begin = command_start(arguments);
   const auto end_of_own = arguments.begin() + static_cast<long>(begin);
-  if (!settings.read(Arguments(arguments.begin(), end_of_own))) {
+  if (!read_command_line(settings, Arguments(arguments.begin(), end_of_own))) {
     return kExitDone;
   }
   check(job);

@@ -5,7 +5,6 @@
 #include <filesystem>
 
 #include "apps/commands/commands.h"
-#include "apps/inputs/calibration_settings.h"
 #include "apps/inputs/input_limits.h"
 #include "apps/inputs/kitti_cameras_choice.h"
 #include "apps/inputs/sampled_matches.h"
@@ -17,11 +16,13 @@
 #include "apps/process/tell.h"
 #include "apps/reports/rectify_results.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
+#include "engine/options/calibration_settings.h"
+#include "engine/options/settings.h"
 #include "engine/rectification/feature_matches.h"
 #include "engine/rectification/improved_rectification.h"
 #include "engine/rectification/rectification_file.h"
@@ -204,7 +205,7 @@ int command_rectify(const Arguments& arguments) {
                     "Rectifies photographs of two cameras so that their rows correspond, and "
                     "reports the remaining error.");
   add_rectify_settings(settings, job);
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job, settings);

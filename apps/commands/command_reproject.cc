@@ -4,22 +4,24 @@
 #include <optional>
 
 #include "apps/commands/commands.h"
-#include "apps/inputs/calibration_settings.h"
 #include "apps/inputs/input_limits.h"
 #include "apps/inputs/kitti_cameras_choice.h"
-#include "apps/inputs/rig_scale.h"
 #include "apps/match/depth_outputs.h"
 #include "apps/process/command_work.h"
+#include "apps/process/outputs.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/match_settings.h"
-#include "apps/settings/metric_settings.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/image/eight_bit.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/disparity_io.h"
+#include "engine/options/calibration_settings.h"
+#include "engine/options/match_settings.h"
+#include "engine/options/metric_settings.h"
+#include "engine/options/rig_scale.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 namespace {
@@ -151,7 +153,7 @@ int command_reproject(const Arguments& arguments) {
        "cloud.ply",
        "vantage reproject map.pfm --image left.png --calibration calib.txt --mesh mesh.ply "
        "--max-depth 20"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job, settings);

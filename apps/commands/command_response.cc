@@ -11,15 +11,16 @@
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/parameter_settings.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/evaluation/cumulative_response.h"
 #include "engine/evaluation/rms_differences.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/npy.h"
+#include "engine/options/parameter_settings.h"
+#include "engine/options/settings.h"
 #include "engine/plot/drawing.h"
 
 namespace vantage::apps {
@@ -192,7 +193,7 @@ int command_response(const Arguments& arguments) {
       {"vantage response left.png right.png -o response.csv --plot response.svg",
        "vantage response left.png right.png -o response.csv --displacements-x 0:63",
        "vantage response left.png right.png -o response.npy --displacements-y -4:4"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job, settings);

@@ -14,6 +14,7 @@
 #include "apps/run/run_session.h"
 #include "apps/run/run_settings.h"
 #include "apps/run/stream_run.h"
+#include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
 #include "engine/sequence/sequence_join.h"
@@ -87,7 +88,7 @@ int command_run(const Arguments& arguments) {
   RunJob job;
   Settings settings("run", "Computes disparity maps and new views of a sequence of stereo pairs.");
   add_run_settings(settings, job);
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   take_up_run(arguments, settings, job);

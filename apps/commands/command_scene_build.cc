@@ -14,10 +14,11 @@
 #include "apps/reports/run_report.h"
 #include "apps/scene/scene_images.h"
 #include "apps/scene/scene_rectification.h"
-#include "apps/settings/match_settings.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
+#include "engine/options/match_settings.h"
+#include "engine/options/settings.h"
 #include "engine/scene_graph/scene_builder.h"
 
 namespace vantage::apps {
@@ -127,7 +128,7 @@ int command_scene_build(const Arguments& arguments) {
       "('vantage scene poses'). --disparities is for the nearest neighbours; with --poses for "
       "those at the median distance.");
   add_scene_build_settings(settings, job);
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job);

@@ -11,9 +11,10 @@
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/options/settings.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/scene_graph/scene_cloud.h"
 #include "engine/scene_graph/stored_scene.h"
@@ -71,7 +72,7 @@ int command_scene_cloud(const Arguments& arguments) {
                            "cloud-step", "threads", "quiet"},
                           {"vantage scene cloud scene -o cloud.ply",
                            "vantage scene cloud scene -o cloud.ply --min-images 2 --cloud-step 2"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   job.cloud.validate();

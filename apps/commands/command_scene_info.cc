@@ -3,7 +3,8 @@
 #include <string>
 
 #include "apps/commands/commands.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "engine/options/settings.h"
 #include "engine/quoted_text.h"
 #include "engine/scene_graph/stored_scene.h"
 
@@ -74,7 +75,7 @@ int command_scene_info(const Arguments& arguments) {
   Settings settings("scene info", "Prints the images and edges of a scene.");
   settings.start_group("Files");
   settings.positional("scene", folder, "Folder made by 'vantage scene build'").required = true;
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   const StoredScene scene = read_scene(folder);

@@ -16,11 +16,12 @@
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/frame_source.h"
+#include "engine/options/settings.h"
 #include "engine/pose_estimation/camera_estimation.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/sequence/sequence_layout.h"
@@ -292,7 +293,7 @@ int command_scene_poses(const Arguments& arguments) {
       {"vantage scene poses --images photographs/ -o model",
        "vantage scene poses --images photographs/ --known-distance 0:1:0.25 -o model",
        "vantage scene build --poses model --images photographs/ -o scene"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   job.estimation.validate();

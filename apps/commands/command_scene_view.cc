@@ -16,9 +16,11 @@
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
 #include "apps/scene/wanted_scene_views.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
+#include "engine/options/settings.h"
+#include "engine/options/synthesis_settings.h"
 #include "engine/scene_graph/posed_viewer.h"
 #include "engine/scene_graph/scene_viewer.h"
 #include "engine/scene_graph/stored_scene.h"
@@ -229,7 +231,7 @@ int command_scene_view(const Arguments& arguments) {
        "vantage scene view scene --sweep 0,0:0.6,0:60 -o along.mp4",
        "vantage scene view posed --between 3:7:0.5 -o between.png",
        "vantage scene view scene --at 0.25,0 --stereo-packing arcd -o anaglyph.png"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   job.synthesis.validate();

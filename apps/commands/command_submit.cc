@@ -16,11 +16,12 @@
 #include "apps/run/run_settings.h"
 #include "apps/run/slurm_scripts.h"
 #include "apps/run/stream_run.h"
-#include "apps/settings/setting_value.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/json_text.h"
+#include "engine/options/setting_value.h"
+#include "engine/options/settings.h"
 #include "engine/quoted_text.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"
@@ -264,7 +265,7 @@ int command_submit(const Arguments& arguments) {
   SubmitJob job;
   Settings settings("submit", "Runs a sequence on a cluster: one task per shard, then the merge.");
   add_submit_settings(settings, job);
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job);
@@ -279,8 +280,8 @@ int command_submit(const Arguments& arguments) {
   // The settings of the run alone, bound to the same fields.
   Settings run_settings("run", "");
   add_run_settings(run_settings, job.run);
-  const std::string submit_file = settings.toml();
-  const std::string job_file = run_settings.toml();
+  const std::string submit_file = to_toml(settings);
+  const std::string job_file = to_toml(run_settings);
 
   RunReport report(settings.command(), settings.values());
   force_instruction_set(job.run.common.isa);

@@ -14,12 +14,15 @@
 #include "apps/process/command_work.h"
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
-#include "apps/reports/matrix_rows.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
-#include "apps/settings/wanted_views.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
+#include "apps/settings/toml_file.h"
 #include "engine/image/memory_use.h"
+#include "engine/options/matrix_rows.h"
+#include "engine/options/settings.h"
+#include "engine/options/synthesis_settings.h"
+#include "engine/options/wanted_views.h"
 #include "engine/synthesis/view_renderer.h"
 #include "engine/view_geometry/view_pose.h"
 
@@ -109,10 +112,10 @@ int command_synth(const Arguments& arguments) {
       {"vantage synth left.png right.png --view 0.5 -o between.png",
        "vantage synth left.png right.png --sweep 0:1:50 -o sweep.mp4",
        "vantage synth left.png right.png --calibration calib.txt --orbit 0.3:60 -o orbit.mp4"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
-  std::vector<ViewPose> poses = poses_of(job.views);
+  std::vector<ViewPose> poses = poses_of(job.views, read_toml_document);
   const int views = static_cast<int>(poses.size());
   ViewOutputs outputs(job.output, settings, views);
   check(job, settings, outputs);

@@ -19,9 +19,10 @@
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
 #include "apps/reports/tuning_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
+#include "engine/options/settings.h"
 #include "engine/simd.h"
 #include "engine/tuning/tuning_file.h"
 #include "engine/tuning/tuning_session.h"
@@ -202,7 +203,7 @@ int command_tune(const Arguments& arguments) {
       {"vantage tune --size 1280x720 --disparities 0:127",
        "vantage tune --size 1280x720 --disparities 0:127 --preset fast --for run --budget 300",
        "vantage tune --list"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   check(job, settings);

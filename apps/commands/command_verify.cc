@@ -11,6 +11,7 @@
 #include "apps/run/run_session.h"
 #include "apps/run/run_settings.h"
 #include "apps/run/verified_run.h"
+#include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/sequence/delivered_frames.h"
 
@@ -51,7 +52,7 @@ int command_verify(const Arguments& arguments) {
   VerifyJob job;
   Settings settings("verify", "Reads the results of a run and lists damaged files.");
   add_verify_settings(settings, job);
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   FileChecks files(settings);

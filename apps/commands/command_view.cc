@@ -10,10 +10,12 @@
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/command_line.h"
+#include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/options/settings.h"
+#include "engine/options/synthesis_settings.h"
 
 namespace vantage::apps {
 namespace {
@@ -86,7 +88,7 @@ int command_view(const Arguments& arguments) {
       {"vantage view left.png right.png -o pair.html",
        "vantage view left.png right.png -o pair.html --images jpeg --range 0:1",
        "vantage view left.jpg right.jpg --calibration rig.yml -o pair.html"});
-  if (!settings.read(arguments)) {
+  if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   job.page.validate();

@@ -5,10 +5,10 @@
 #include <cstdio>
 
 #include "apps/process/tell.h"
-#include "apps/settings/match_settings.h"
 #include "engine/matching/range_check.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/vertical_range.h"
+#include "engine/options/match_settings.h"
 
 namespace vantage::apps {
 namespace {

@@ -5,12 +5,12 @@
 #include <string_view>
 
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/common_options.h"
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/range_check.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/settings/settings.h"
 #include "engine/io/video/frame_rate.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 

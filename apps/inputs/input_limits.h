@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/settings/settings.h"
 #include "engine/execution.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 

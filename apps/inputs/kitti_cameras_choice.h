@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "apps/inputs/list_columns.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/common_options.h"
+#include "engine/jobs/list_columns.h"
+#include "engine/options/settings.h"
 #include "engine/rectification/kitti_cameras.h"
 
 namespace vantage::apps {

@@ -6,14 +6,14 @@
 #include <utility>
 
 #include "apps/inputs/automatic_disparities.h"
-#include "apps/inputs/calibration_settings.h"
 #include "apps/inputs/given_maps.h"
 #include "apps/inputs/kitti_cameras_choice.h"
 #include "apps/inputs/rectification_check.h"
-#include "apps/settings/match_settings.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/disparity_io.h"
+#include "engine/options/calibration_settings.h"
+#include "engine/options/match_settings.h"
 #include "engine/rectification/stereo_calibration.h"
 
 namespace vantage::apps {

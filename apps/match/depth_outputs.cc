@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/settings/metric_settings.h"
+#include "apps/process/outputs.h"
 #include "engine/error.h"
 #include "engine/image/finite_values.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/maps/depth_io.h"
 #include "engine/io/maps/map_formats.h"
+#include "engine/options/metric_settings.h"
 #include "engine/order_statistics.h"
 #include "engine/reprojection/ply_file.h"
 

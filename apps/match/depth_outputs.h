@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/inputs/rig_scale.h"
 #include "apps/process/outputs.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/settings.h"
 #include "engine/execution.h"
+#include "engine/options/rig_scale.h"
+#include "engine/options/settings.h"
 #include "engine/reprojection/point_cloud.h"
 
 namespace vantage::apps {

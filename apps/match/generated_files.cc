@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include "apps/process/outputs.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/disparity_io.h"

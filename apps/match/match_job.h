@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "apps/settings/applied_tuning.h"
+#include "apps/settings/common_options.h"
 #include "apps/settings/depth_settings.h"
-#include "apps/settings/match_settings.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
-#include "apps/settings/volume_output.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/options/match_settings.h"
+#include "engine/options/settings.h"
+#include "engine/options/volume_output.h"
 
 namespace vantage::apps {
 

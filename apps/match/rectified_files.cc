@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "apps/process/outputs.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/sequence/sequence_layout.h"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/inputs/frame_rate_setting.h"
+#include "apps/process/outputs.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "apps/process/outputs.h"
-#include "apps/settings/settings.h"
 #include "engine/image/photograph.h"
 #include "engine/image/stereo_display.h"
 #include "engine/io/video/video_io.h"
+#include "engine/options/settings.h"
 #include "engine/synthesis/view_synthesizer.h"
 
 namespace vantage::apps {

@@ -5,9 +5,9 @@
 
 #include "apps/match/view_output.h"
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/setting_value.h"
+#include "apps/settings/common_options.h"
 #include "engine/execution.h"
+#include "engine/options/setting_value.h"
 #include "engine/synthesis/view_renderer.h"
 
 namespace vantage::apps {

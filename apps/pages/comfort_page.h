@@ -3,10 +3,10 @@
 #include <map>
 #include <string>
 
-#include "apps/settings/setting_value.h"
 #include "engine/comfort/comfort_summary.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/frame_times.h"
+#include "engine/options/setting_value.h"
 
 namespace vantage::apps {
 

@@ -8,11 +8,11 @@
 #include "apps/book/figure_files.h"
 #include "apps/pages/embedded_files.h"
 #include "apps/pages/page_template.h"
-#include "apps/settings/parameter_settings.h"
-#include "apps/settings/settings.h"
 #include "engine/build_info.h"
 #include "engine/io/files/base64.h"
 #include "engine/io/files/markup_text.h"
+#include "engine/options/parameter_settings.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 namespace {

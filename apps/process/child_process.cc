@@ -16,8 +16,8 @@
 #include <cstring>
 #include <filesystem>
 
-#include "apps/settings/setting_value.h"
 #include "engine/error.h"
+#include "engine/options/setting_value.h"
 
 namespace vantage::apps {
 namespace {

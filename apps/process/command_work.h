@@ -1,9 +1,9 @@
 #pragma once
 
 #include "apps/reports/run_report.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/common_options.h"
 #include "engine/execution.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 

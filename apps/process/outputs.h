@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/settings/settings.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 

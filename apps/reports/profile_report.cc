@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/reports/text_table.h"
-#include "apps/settings/setting_value.h"
+#include "engine/options/setting_value.h"
 #include "engine/profiling/profile_figures.h"
 #include "engine/profiling/profile_findings.h"
 #include "engine/profiling/quantity_text.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "apps/process/child_process.h"
+#include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/quoted_text.h"
 
@@ -38,7 +39,7 @@ std::unique_ptr<ProfiledCommand> ProfiledCommand::read(const Arguments& words) {
         "'{}' cannot be profiled, expected match or run with its arguments", quotable(name)));
   }
   std::unique_ptr<ProfiledCommand> command(new ProfiledCommand(words, name == "match"));
-  if (!command->settings_.read(Arguments(words.begin() + 1, words.end()))) {
+  if (!read_command_line(command->settings_, Arguments(words.begin() + 1, words.end()))) {
     return nullptr;
   }
   command->check();
@@ -147,7 +148,7 @@ std::string ProfiledCommand::job_file(int threads, const std::string& report,
   options.execution.threads = threads;
   options.report = report;
   options.trace = trace;
-  return settings_.toml();
+  return to_toml(settings_);
 }
 
 void ProfiledCommand::clear_results() const {

@@ -11,7 +11,7 @@
 #include "apps/match/match_job.h"
 #include "apps/process/scratch_folder.h"
 #include "apps/run/run_settings.h"
-#include "apps/settings/settings.h"
+#include "engine/options/settings.h"
 #include "engine/profiling/profile_advice.h"
 
 namespace vantage::apps {

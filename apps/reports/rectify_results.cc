@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "apps/process/tell.h"
-#include "apps/reports/matrix_rows.h"
 #include "apps/reports/vertical_error_report.h"
+#include "engine/options/matrix_rows.h"
 #include "engine/rectification/row_error_cost.h"
 
 namespace vantage::apps {

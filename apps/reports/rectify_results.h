@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/settings/setting_value.h"
+#include "engine/options/setting_value.h"
 #include "engine/rectification/improved_rectification.h"
 #include "engine/rectification/rectified_pair.h"
 

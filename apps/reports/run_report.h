@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/settings/setting_value.h"
 #include "engine/execution.h"
 #include "engine/image/memory_use.h"
 #include "engine/matching/stereo_matcher.h"
+#include "engine/options/setting_value.h"
 #include "engine/seconds_since.h"
 #include "scheduler/strip_plan.h"
 #include "scheduler/trace.h"

@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "apps/settings/setting_value.h"
+#include "engine/options/setting_value.h"
 #include "engine/profiling/waiting_causes.h"
 #include "scheduler/trace.h"
 #include "scheduler/trace_summary.h"

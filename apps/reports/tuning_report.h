@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "apps/settings/setting_value.h"
+#include "engine/options/setting_value.h"
 #include "engine/tuning/tuning_file.h"
 #include "engine/tuning/tuning_session.h"
 

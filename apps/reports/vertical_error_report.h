@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "apps/settings/setting_value.h"
+#include "engine/options/setting_value.h"
 #include "engine/rectification/vertical_error.h"
 
 namespace vantage::apps {

@@ -8,10 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/settings/match_settings.h"
+#include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/io/files/json_text.h"
 #include "engine/io/files/stored_name.h"
+#include "engine/options/match_settings.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"
 
@@ -103,7 +104,7 @@ void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job) {
     throw Error(fmt::format("{}: cannot be read as the settings of a run: {}",
                             (journal / "run.json").string(), error.what()));
   }
-  (void)settings.read(arguments);
+  (void)read_command_line(settings, arguments);
   if (!settings.is_set("frames") && !settings.is_set("shard")) {
     const RunPart part = resumed_part(journal);
     job.frames = part.frames;

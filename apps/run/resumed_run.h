@@ -6,8 +6,8 @@
 
 #include "apps/commands/commands.h"
 #include "apps/run/run_settings.h"
-#include "apps/settings/settings.h"
 #include "engine/image/disparity_range.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 

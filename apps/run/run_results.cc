@@ -11,8 +11,8 @@
 
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/process/tell.h"
-#include "apps/reports/flicker_values.h"
 #include "apps/settings/depth_settings.h"
+#include "engine/jobs/flicker_values.h"
 #include "engine/order_statistics.h"
 #include "engine/sequence/sequence_join.h"
 

@@ -4,8 +4,8 @@
 
 #include "apps/reports/run_report.h"
 #include "apps/run/run_settings.h"
-#include "apps/run/sequence_session.h"
 #include "apps/settings/applied_tuning.h"
+#include "engine/jobs/sequence_session.h"
 #include "engine/sequence/memory_plan.h"
 #include "engine/sequence/pair_cameras.h"
 #include "engine/sequence/run_journal.h"

@@ -4,18 +4,21 @@
 
 #include <algorithm>
 
-#include "apps/inputs/calibration_settings.h"
 #include "apps/inputs/frame_rate_setting.h"
-#include "apps/inputs/frame_step_setting.h"
 #include "apps/inputs/input_limits.h"
 #include "apps/inputs/rectification_check.h"
+#include "apps/process/outputs.h"
 #include "apps/run/slurm_scripts.h"
 #include "apps/run/stream_run.h"
 #include "apps/settings/depth_video_settings.h"
-#include "apps/settings/match_settings.h"
-#include "apps/settings/metric_settings.h"
+#include "apps/settings/toml_file.h"
 #include "engine/error.h"
 #include "engine/io/maps/map_formats.h"
+#include "engine/options/calibration_settings.h"
+#include "engine/options/frame_step_setting.h"
+#include "engine/options/match_settings.h"
+#include "engine/options/metric_settings.h"
+#include "engine/options/synthesis_settings.h"
 
 namespace vantage::apps {
 namespace {
@@ -196,7 +199,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
 }
 
 void complete(RunJob& job, const Settings& settings) {
-  read_pose_files(job.views);
+  read_pose_files(job.views, read_toml_document);
   complete_sequence(job, reads_stream(job) || writes_stream(job));
   refuse_idle_outputs(settings, job.sequence, writes_stream(job) || job.input.raw_video);
   check_stream(job, settings);

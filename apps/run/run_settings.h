@@ -6,10 +6,10 @@
 
 #include "apps/process/outputs.h"
 #include "apps/process/progress.h"
-#include "apps/run/sequence_job.h"
 #include "apps/settings/applied_tuning.h"
-#include "apps/settings/option_groups.h"
-#include "apps/settings/settings.h"
+#include "apps/settings/common_options.h"
+#include "engine/jobs/sequence_job.h"
+#include "engine/options/settings.h"
 #include "engine/sequence/sequence_layout.h"
 #include "engine/sequence/work_plan.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/settings/settings.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 

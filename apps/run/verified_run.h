@@ -3,7 +3,7 @@
 #include <string>
 
 #include "apps/process/progress.h"
-#include "apps/settings/setting_value.h"
+#include "engine/options/setting_value.h"
 #include "engine/sequence/run_verification.h"
 #include "engine/sequence/sequence_layout.h"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/settings/setting_value.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/options/setting_value.h"
 #include "engine/scene_graph/scene_builder.h"
 
 namespace vantage::apps {

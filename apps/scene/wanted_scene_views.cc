@@ -6,8 +6,9 @@
 #include <variant>
 
 #include "apps/scene/scene_images.h"
-#include "apps/settings/wanted_views.h"
+#include "apps/settings/toml_file.h"
 #include "engine/error.h"
+#include "engine/options/wanted_views.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage::apps {
@@ -58,7 +59,7 @@ std::vector<ScenePosition> positions_of_path(const std::string& file) {
   WantedViews path;
   path.path.file = file;
   std::vector<ScenePosition> positions;
-  for (const ViewPose& pose : poses_of(path)) {
+  for (const ViewPose& pose : poses_of(path, read_toml_document)) {
     const auto* position = std::get_if<BaselinePosition>(&pose);
     if (position == nullptr) {
       throw UsageError(
@@ -209,7 +210,7 @@ std::vector<PosedCamera> scene_cameras_of(const WantedSceneViews& wanted,
   const std::string& file = wanted.pose_file.empty() ? wanted.path_file : wanted.pose_file;
   WantedViews listed;
   (wanted.pose_file.empty() ? listed.path : listed.poses).file = file;
-  for (const ViewPose& pose : poses_of(listed)) {
+  for (const ViewPose& pose : poses_of(listed, read_toml_document)) {
     const auto* camera = std::get_if<PosedCamera>(&pose);
     if (camera == nullptr) {
       throw UsageError(fmt::format(

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/settings/settings.h"
+#include "engine/options/settings.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/view_geometry/posed_camera.h"
 

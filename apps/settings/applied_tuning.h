@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/settings/setting_value.h"
-#include "apps/settings/settings.h"
 #include "engine/image/photograph.h"
+#include "engine/options/setting_value.h"
+#include "engine/options/settings.h"
 #include "engine/tuning/tuning_file.h"
 
 namespace vantage::apps {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/inputs/calibration_settings.h"
-#include "apps/settings/metric_settings.h"
 #include "engine/error.h"
 #include "engine/io/maps/map_formats.h"
+#include "engine/options/calibration_settings.h"
+#include "engine/options/metric_settings.h"
 
 namespace vantage::apps {
 

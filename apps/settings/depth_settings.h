@@ -3,10 +3,10 @@
 #include <optional>
 #include <string>
 
-#include "apps/inputs/rig_scale.h"
 #include "apps/match/depth_outputs.h"
-#include "apps/settings/settings.h"
 #include "engine/image/image.h"
+#include "engine/options/rig_scale.h"
+#include "engine/options/settings.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/view_geometry/depth_resolution.h"
 

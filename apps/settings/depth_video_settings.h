@@ -1,7 +1,7 @@
 #pragma once
 
-#include "apps/settings/settings.h"
 #include "engine/io/video/video_coding.h"
+#include "engine/options/settings.h"
 #include "engine/sequence/sequence_options.h"
 
 namespace vantage::apps {

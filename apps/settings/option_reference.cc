@@ -42,17 +42,18 @@ SettingValue option_reference(const Setting& setting, bool is_common) {
   return entry;
 }
 
-SettingValue command_reference(const std::string& command, const std::string& summary,
-                               const std::deque<Setting>& settings,
-                               const std::vector<std::string_view>& common,
-                               const std::vector<std::string_view>& examples) {
+SettingValue command_reference(const Settings& settings) {
+  const std::vector<std::string_view>& common = settings.short_help();
   SettingValue options = SettingValue::array();
-  for (const Setting& setting : settings) {
+  for (const Setting& setting : settings.all()) {
     const bool is_common =
         common.empty() || std::ranges::find(common, setting.name) != common.end();
     options.push_back(option_reference(setting, is_common));
   }
-  return {{"command", command}, {"summary", summary}, {"examples", examples}, {"options", options}};
+  return {{"command", settings.command()},
+          {"summary", settings.summary()},
+          {"examples", settings.examples()},
+          {"options", options}};
 }
 
 }  // namespace vantage::apps

@@ -1,12 +1,7 @@
 #pragma once
 
-#include <deque>
-#include <string>
-#include <string_view>
-#include <vector>
-
-#include "apps/settings/setting_value.h"
-#include "apps/settings/settings.h"
+#include "engine/options/setting_value.h"
+#include "engine/options/settings.h"
 
 namespace vantage::apps {
 
@@ -16,11 +11,7 @@ namespace vantage::apps {
 /// `common` (in the short help).
 SettingValue option_reference(const Setting& setting, bool is_common);
 
-/// A command as JSON: `command`, `summary`, `examples` and `options`. `common` names the settings
-/// of the short help; empty: all are.
-SettingValue command_reference(const std::string& command, const std::string& summary,
-                               const std::deque<Setting>& settings,
-                               const std::vector<std::string_view>& common,
-                               const std::vector<std::string_view>& examples);
+/// A command as JSON: `command`, `summary`, `examples` and `options`.
+SettingValue command_reference(const Settings& settings);
 
 }  // namespace vantage::apps

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "apps/settings/settings.h"
+#include "engine/options/settings.h"
 
 namespace CLI {
 class App;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/settings/setting_value.h"
+#include "engine/options/setting_value.h"
 
 namespace vantage::apps {
 

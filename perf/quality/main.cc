@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/settings/setting_value.h"
 #include "engine/error.h"
+#include "engine/options/setting_value.h"
 #include "engine/simd.h"
 #include "perf/command_line.h"
 #include "perf/default_paths.h"
@@ -93,7 +93,7 @@ std::vector<T> chosen(const std::vector<T>& all, const std::optional<std::string
   for (const T& one : all) {
     known.merge(std::set<std::string>(names_of(one)));
   }
-  const std::vector<std::string> names = apps::split(*list, ',');
+  const std::vector<std::string> names = split(*list, ',');
   for (const std::string& name : names) {
     if (!known.contains(name)) {
       throw UsageError(

@@ -4,10 +4,10 @@
 
 #include <utility>
 
-#include "apps/settings/match_settings.h"
-#include "apps/settings/settings.h"
 #include "apps/settings/toml_file.h"
 #include "engine/error.h"
+#include "engine/options/match_settings.h"
+#include "engine/options/settings.h"
 
 namespace vantage::perf {
 namespace {
@@ -71,24 +71,24 @@ class SgbmMaps : public MapMaker {
 };
 
 /// Removes `note` from the entry and returns it.
-std::string take_note(apps::SettingValue& entry) {
+std::string take_note(SettingValue& entry) {
   const auto note = entry.find("note");
   if (note == entry.end()) {
     return "";
   }
-  std::string text = apps::to_text(*note);
+  std::string text = to_text(*note);
   entry.erase(note);
   return text;
 }
 
-MapContender experiment(const std::string& name, apps::SettingValue entry) {
+MapContender experiment(const std::string& name, SettingValue entry) {
   if (!entry.is_object()) {
-    apps::reject_value(entry, "a table of settings");
+    reject_value(entry, "a table of settings");
   }
   std::string note = take_note(entry);
   MatchOptions options;
-  apps::Settings settings("", "");
-  apps::add_match_settings(settings, options);
+  Settings settings;
+  add_match_settings(settings, options);
   settings.set_values(entry);
   options.validate();
   return {name, std::move(note), false, [options](const ScenePair& pair, Execution& execution) {
@@ -107,7 +107,7 @@ MapContender sgbm_contender(const SgbmSetting& setting) {
 
 std::vector<MapContender> experiments(const std::filesystem::path& file) {
   std::vector<MapContender> contenders;
-  const apps::SettingValue entries = apps::read_toml_document(file.string());
+  const SettingValue entries = apps::read_toml_document(file.string());
   for (const auto& [name, entry] : entries.items()) {
     try {
       contenders.push_back(experiment(name, entry));

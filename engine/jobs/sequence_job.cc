@@ -1,0 +1,294 @@
+#include "engine/jobs/sequence_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/options/calibration_settings.h"
+#include "engine/options/frame_step_setting.h"
+#include "engine/options/match_settings.h"
+#include "engine/options/pair_source_settings.h"
+#include "engine/options/synthesis_settings.h"
+#include "engine/sequence/memory_plan.h"
+
+namespace vantage {
+namespace {
+
+constexpr std::string_view kAutomatic = "auto";
+
+std::string known_outputs() {
+  std::string names;
+  for (const auto& [name, output] : sequence_output_names()) {
+    names += (names.empty() ? "" : ", ") + std::string(name);
+  }
+  return names;
+}
+
+void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x) {
+  Setting& setting = settings.add("stereo-views", "XL,XR",
+                                  "Positions of the two views of the stereo output, in baselines; "
+                                  "0,1: the photographs themselves");
+  setting.set = [&views_x](const SettingValue& value) {
+    views_x = from_parts(
+        value, ',', 2, "two positions on the baseline such as 0.25,0.75", [](const auto& parts) {
+          return std::optional(std::array{to_number(parts[0]), to_number(parts[1])});
+        });
+  };
+  setting.get = [&views_x] { return fmt::format("{},{}", views_x[0], views_x[1]); };
+}
+
+/// --frames A-B:N also says which frames are taken, for all parts of the run.
+void apply_step_of_frames(SequenceJob& job) {
+  if (!job.step_of_frames) {
+    return;
+  }
+  const FrameStep step{.pairs = *job.step_of_frames,
+                       .first = job.frames->first % *job.step_of_frames,
+                       .seconds = std::nullopt};
+  if (!job.input.every.takes_all() && job.input.every != step) {
+    throw UsageError(fmt::format("--every is {} and --frames {}-{}:{}, expected one of the two",
+                                 to_text(job.input.every), job.frames->first, job.frames->end - 1,
+                                 *job.step_of_frames));
+  }
+  job.input.every = step;
+}
+
+/// Several cameras per frame.
+void check_several(const SequenceJob& job, const Settings& settings, bool is_continued) {
+  if (job.sequence.baselines.empty() && job.input.more.empty()) {
+    return;
+  }
+  if (job.input.left.empty() && !is_continued) {
+    throw UsageError("--baselines has no effect without --left and --right");
+  }
+  check_baselines(settings, job.sequence.baselines, 1 + job.input.more.size());
+  if (!job.calibration.empty()) {
+    throw UsageError(
+        "--calibration cannot be used with --baselines: it rectifies the images of two cameras "
+        "only");
+  }
+}
+
+/// Refuses options without effect.
+void refuse_idle_options(const SequenceOptions& sequence, const Settings& settings) {
+  using Output = SequenceOutput;
+  if (!sequence.saves(Output::kStereo)) {
+    settings.refuse_idle({"stereo-views", "stereo-packing"}, "where --save has no stereo");
+  }
+  if (!std::ranges::any_of(
+          std::array{Output::kViews, Output::kHoles, Output::kSources, Output::kStereo},
+          [&](Output output) { return sequence.saves(output); })) {
+    settings.refuse_idle({"intensity-fit", "warp", "holes", "soft-edges", "gamma", "gradient-limit",
+                          "no-intensity-matching"},
+                         "where --save has no views, holes, sources, stereo");
+  }
+  check_combining(settings, sequence.synthesis);
+  if (!sequence.synthesis.match_intensities) {
+    settings.refuse_idle({"intensity-fit"}, "with --no-intensity-matching");
+  }
+  if (!sequence.temporal.uses_past() && !sequence.measure_flicker) {
+    settings.refuse_idle({"temporal-threshold"},
+                         "without --temporal-prior, --reuse and --measure-flicker");
+  }
+}
+
+/// The options of the sequence are checked with it.
+void check_unrectified(const SequenceJob& job, const Settings& settings) {
+  if (job.unrectified.empty()) {
+    settings.refuse_idle({"rectified-pixels"}, "without --unrectified");
+    return;
+  }
+  settings.refuse_idle({"cross-check-level"}, "with --unrectified: whole maps are compared");
+  if (!job.calibration.empty()) {
+    throw UsageError(
+        "--calibration and --unrectified are both given, expected one of them: both are of the "
+        "cameras");
+  }
+}
+
+}  // namespace
+
+std::vector<SequenceOutput> to_outputs(const SettingValue& value) {
+  std::vector<SequenceOutput> outputs;
+  for (const SettingValue& member : to_list(value)) {
+    for (const std::string& name : split(to_text(member), ',')) {
+      const auto known = std::ranges::find(sequence_output_names(), name,
+                                           &std::pair<std::string_view, SequenceOutput>::first);
+      if (known == sequence_output_names().end()) {
+        reject_value(name, "some of " + known_outputs());
+      }
+      if (std::ranges::find(outputs, known->second) == outputs.end()) {
+        outputs.push_back(known->second);
+      }
+    }
+  }
+  return outputs;
+}
+
+SettingValue output_names(const std::vector<SequenceOutput>& outputs) {
+  SettingValue names = SettingValue::array();
+  for (const SequenceOutput output : outputs) {
+    names.push_back(std::ranges::find(sequence_output_names(), output,
+                                      &std::pair<std::string_view, SequenceOutput>::second)
+                        ->first);
+  }
+  return names;
+}
+
+void add_input_settings(Settings& settings, SequenceJob& job) {
+  settings.start_group("Input: one of --left with --right, --stereo, --pairs, --sequence");
+  add_pair_source_settings(settings, job.input);
+  Setting& more =
+      settings.add("more", "SOURCE",
+                   "With --left and --right: frames of a camera on the same line, whose "
+                   "frame i belongs to left frame i; repeatable, needs --baselines");
+  more.path = PathRole::kInput;
+  more.list = true;
+  more.changes_results = false;
+  more.set = [&job](const SettingValue& value) {
+    job.input.more.clear();
+    for (const SettingValue& member : to_list(value)) {
+      job.input.more.push_back(to_text(member));
+    }
+  };
+  more.get = [&job] { return job.input.more; };
+  add_baselines_setting(settings, job.sequence.baselines,
+                        "Positions of the right camera and of those of --more, relative to the "
+                        "left camera, positive to the right: all images of a frame are matched at "
+                        "once; disparities are those of left and right");
+  settings
+      .input_path("calibration", job.calibration, "FILE",
+                  "Cameras, to rectify the pairs first: OpenCV, Middlebury or KITTI file")
+      .changes_results = false;  // the journal identifies inputs by their content
+  add_kept_outline_setting(settings, job.rectification);
+}
+
+void add_save_setting(Settings& settings, SequenceJob& job) {
+  Setting& save = settings.add(
+      "save", "LIST", "Outputs per frame: " + known_outputs() + "; auto: disparity and views");
+  save.list = true;
+  save.set = [&job](const SettingValue& value) {
+    const auto members = to_list(value);
+    if (members.size() == 1 && members.front() == kAutomatic) {
+      job.save.reset();
+    } else {
+      job.save = to_outputs(value);
+    }
+  };
+  save.get = [&job] { return job.save ? output_names(*job.save) : SettingValue(kAutomatic); };
+}
+
+void add_picture_settings(Settings& settings, SequenceJob& job) {
+  add_sequence_view_settings(settings, job.views, job.sequence.look_at_px);
+  add_stereo_views_setting(settings, job.sequence.stereo_views_x);
+  settings.choice<StereoDisplay>("stereo-packing", job.sequence.stereo_packing,
+                                 stereo_display_names(),
+                                 "Layout of the stereo output: side by side, above/below, "
+                                 "interleaved or anaglyph, using ffmpeg's stereo3d names");
+}
+
+void add_poses_setting(Settings& settings, SequenceJob& job) {
+  settings
+      .input_path("poses", job.poses, "FILE",
+                  "Poses of the left camera in metres, one per pair (TUM or KITTI trajectory): "
+                  "clouds and meshes are in their world")
+      .changes_results = false;  // the journal identifies inputs by their content
+}
+
+void add_steadiness_settings(Settings& settings, SequenceJob& job) {
+  SequenceOptions& options = job.sequence;
+  settings.start_group("Temporal stability");
+  settings.choice<FitScope>("intensity-fit", options.intensity_fit,
+                            {{"frame", FitScope::kFrame}, {"shot", FitScope::kShot}},
+                            "Match the brightness of both images once per frame or once per shot");
+  settings.choice<bool>("search-range", job.search_range_per_shot,
+                        {{"film", false}, {"shot", true}},
+                        "Search all frames in one range of disparities, or each shot in the range "
+                        "found there; auto: shot for depth-video and comfort with --disparities "
+                        "auto");
+  settings.choice<bool>("preview-range", options.preview_range_per_shot,
+                        {{"search", false}, {"shot", true}},
+                        "Colour scale of previews: the search range or the disparities of a shot");
+  settings.number("temporal-prior", options.temporal.weight, "W",
+                  "Weight that keeps the disparity of unchanged pixels from frame to frame, 0 to "
+                  "100; 0: off, 1: as strong as their own costs");
+  settings.number("temporal-threshold", options.temporal.threshold, "G",
+                  "A pixel counts as unchanged if it differs by at most this many grey levels");
+  settings.choice<Reuse>("reuse", options.temporal.reuse,
+                         {{"none", Reuse::kNone}, {"frame", Reuse::kFrame}},
+                         "With presets and methods like theirs: frame keeps the disparities of the "
+                         "frame before where the images do not change, which is faster and "
+                         "steadier");
+  settings.flag("measure-flicker", options.measure_flicker,
+                "Measure how much results change where the images do not");
+}
+
+void add_chunk_frames_setting(Settings& settings, SequenceJob& job) {
+  settings
+      .integer("chunk-frames", job.sequence.chunk_frames, "N",
+               "Frames per chunk, 1 to 100000. Parts of a run consist of whole chunks. Videos are "
+               "written chunk by chunk, so an interruption loses one chunk at most. A temporal "
+               "prior starts again with each chunk")
+      .changes_results = true;
+}
+
+void add_in_flight_setting(Settings& settings, SequenceJob& job) {
+  settings.integer(
+      "in-flight", job.in_flight, "N",
+      "Number of frames in flight, 1 to 64; auto: threads + 2, fewer if memory is short");
+}
+
+void complete_sequence(SequenceJob& job, bool is_streamed) {
+  SequenceOptions& sequence = job.sequence;
+  sequence.views = paths_of(job.views);
+  sequence.unrectified = job.unrectified.empty() ? UnrectifiedSearch::kNone
+                         : job.rectified_pixels  ? UnrectifiedSearch::kOnRectified
+                                                 : UnrectifiedSearch::kOnPhotographs;
+  if (job.save) {
+    sequence.save = *job.save;
+  } else {
+    sequence.save = {SequenceOutput::kDisparity};
+    if (!sequence.views.empty()) {
+      sequence.save.push_back(SequenceOutput::kViews);
+    }
+  }
+  if (!job.search_range_per_shot && sequence.is_film()) {
+    // Stays as it is when the range has been found, or the run is continued.
+    job.search_range_per_shot =
+        sequence.match.disparities_auto && !sequence.temporal.uses_past() && !is_streamed;
+  }
+  sequence.search_range_per_shot = job.search_range_per_shot.value_or(false);
+  sequence.validate();
+}
+
+void check_sequence(SequenceJob& job, const Settings& settings, bool is_continued) {
+  refuse_idle_options(job.sequence, settings);
+  check_several(job, settings, is_continued);
+  check_unrectified(job, settings);
+  check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.cameras_file().empty());
+  apply_step_of_frames(job);
+  job.input.validate();
+  job.rectification.validate();
+  // A list of pairs may have them; checked when it has been read.
+  const bool may_be_listed =
+      !job.input.pairs.empty() && job.cameras_file().empty() && !job.rig.replaces_calibration();
+  job.rig.validate(may_be_listed ? job.input.pairs : job.cameras_file());
+  if (job.sequence.is_metric() && !may_be_listed) {
+    job.rig.require_given(job.cameras_file(), "save depth, depth-resolution, cloud or mesh");
+  }
+  if (job.rectification.kept_outline > 0 && job.calibration.empty() && !may_be_listed) {
+    throw UsageError("--kept-outline has no effect without --calibration");
+  }
+  if (job.kitti_cameras && job.cameras_file().empty() && !may_be_listed) {
+    throw UsageError("--kitti-cameras has no effect without --calibration");
+  }
+  if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxFramesInFlight)) {
+    throw UsageError(fmt::format("--in-flight is {}, expected a number from 1 to {}",
+                                 *job.in_flight, kMaxFramesInFlight));
+  }
+}
+
+}  // namespace vantage

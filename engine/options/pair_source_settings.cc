@@ -1,0 +1,71 @@
+#include "engine/options/pair_source_settings.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "engine/options/frame_step_setting.h"
+
+namespace vantage {
+namespace {
+
+constexpr int kMaxSide_px = 65535;
+
+/// Binds --raw-video.
+void add_raw_video_setting(Settings& settings, std::optional<RawVideoShape>& shape) {
+  Setting& setting =
+      settings.add("raw-video", "WxH[:FORMAT]",
+                   "Standard input is rawvideo of this size, in one of FFmpeg's pixel formats "
+                   "(default rgb24), with the frame rate of --fps; none: y4m");
+  setting.set = [&shape](const SettingValue& value) {
+    const std::string text = to_text(value);
+    if (text == "none") {
+      shape.reset();
+      return;
+    }
+    const std::size_t colon = text.find(':');
+    const auto size = two_numbers(text.substr(0, colon), 'x');
+    const std::string format = colon == std::string::npos ? "rgb24" : text.substr(colon + 1);
+    if (!size || size->first < 1 || size->second < 1 || size->first > kMaxSide_px ||
+        size->second > kMaxSide_px || format.empty()) {
+      reject_value(value, "a size such as 1920x1080, or with a format 1920x1080:yuv420p, or none");
+    }
+    shape = RawVideoShape{size->first, size->second, format};
+  };
+  setting.get = [&shape]() -> SettingValue {
+    return shape ? fmt::format("{}x{}:{}", shape->width_px, shape->height_px, shape->pixel_format)
+                 : "none";
+  };
+}
+
+}  // namespace
+
+void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
+  const auto path = [&](std::string name, std::string& field, std::string value_name,
+                        std::string help) {
+    // The journal identifies inputs by their content.
+    settings.input_path(std::move(name), field, std::move(value_name), std::move(help))
+        .changes_results = false;
+  };
+  path("left", input.left, "SOURCE",
+       "Left frames: a folder, pattern (left/%06d.png), glob or video");
+  path("right", input.right, "SOURCE", "Right frames");
+  settings.integer("offset", input.offset_frames, "N", "Pair left frame i with right frame i + N");
+  path("stereo", input.stereo, "SOURCE",
+       "Frames with both images, see --packing; -: y4m on standard input");
+  settings.choice<StereoPacking>(
+      "packing", input.packing, stereo_packing_names(),
+      "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
+      "above/below, left on top; sbs2l, ab2l half size",
+      "none");
+  add_raw_video_setting(settings, input.raw_video);
+  path("pairs", input.pairs, "FILE.csv",
+       "List of image files, lines left,right; a heading may name more columns");
+  path("sequence", input.sequence, "SOURCE", "Frames of one moving camera; see --step");
+  settings.integer("step", input.step, "K",
+                   "Frame t is the left image, frame t + K the right image");
+  add_frame_step_setting(settings, input.every);
+}
+
+}  // namespace vantage
