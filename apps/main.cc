@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -33,8 +34,13 @@ constexpr const char* kExitCodes =
     "0 done, 1 failed, 2 wrong usage, 3 frames skipped, 130 interrupted.";
 
 std::string help() {
-  std::string text = fmt::format("Vantage: {}\n\nUsage: vantage COMMAND [OPTIONS]\n\n", kSummary);
+  std::string text = fmt::format("Vantage: {}\n\nUsage: vantage COMMAND [OPTIONS]\n", kSummary);
+  std::string_view group;
   for (const Command& command : commands()) {
+    if (command.group != group) {
+      group = command.group;
+      text += fmt::format("\n{}\n", group);
+    }
     text += fmt::format("  {:<15} {}\n", command.name, command.summary);
   }
   return text +
@@ -49,7 +55,7 @@ std::string help() {
 std::string help_json() {
   vantage::SettingValue list = vantage::SettingValue::array();
   for (const Command& command : commands()) {
-    list.push_back({{"name", command.name}, {"title", command.summary}});
+    list.push_back({{"name", command.name}, {"title", command.summary}, {"group", command.group}});
   }
   const vantage::SettingValue document = {{"version", vantage::build_info().version},
                                           {"summary", kSummary},
@@ -74,17 +80,16 @@ const Command* take_command(Arguments& arguments) {
 
 std::string unknown_command(const Arguments& arguments) {
   Arguments names;
-  std::string kinds;
+  Arguments of_first_word;
   for (const Command& command : commands()) {
     names.emplace_back(command.name);
-    const Arguments words = vantage::split(command.name, ' ');
-    if (words.size() > 1 && words.front() == arguments.front()) {
-      kinds += (kinds.empty() ? "" : " or ") + fmt::format("'vantage {}'", command.name);
+    if (command.name.starts_with(arguments.front() + ' ')) {
+      of_first_word.push_back(fmt::format("'vantage {}'", command.name));
     }
   }
-  if (!kinds.empty()) {
+  if (of_first_word.size() > 1) {
     return fmt::format("'{}' is the first word of several commands, expected {}", arguments.front(),
-                       kinds);
+                       fmt::join(of_first_word, " or "));
   }
   return fmt::format("unknown command '{}'{}", vantage::quotable(arguments.front()),
                      vantage::apps::hint_for_command(arguments.front(), names));

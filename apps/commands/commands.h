@@ -16,6 +16,7 @@ struct Command {
   std::string_view name;  ///< one word, or two: "generate scene"
   std::string_view summary;
   int (*run)(const Arguments& arguments);
+  std::string_view group;  ///< title above it in --help
 };
 
 inline constexpr int kExitDone = 0;
@@ -24,7 +25,7 @@ inline constexpr int kExitUsage = 2;
 inline constexpr int kExitSkipped = 3;
 inline constexpr int kExitInterrupted = 130;
 
-/// All subcommands, in the order of --help.
+/// All subcommands, in the order of --help; those of a group stand together.
 std::span<const Command> commands();
 
 int command_match(const Arguments& arguments);
@@ -40,15 +41,15 @@ int command_scene_view(const Arguments& arguments);
 int command_asp(const Arguments& arguments);
 int command_scene_cloud(const Arguments& arguments);
 int command_scene_info(const Arguments& arguments);
-int command_generate_book(const Arguments& arguments);
 int command_generate_scene(const Arguments& arguments);
-int command_response(const Arguments& arguments);
-int command_experiment(const Arguments& arguments);
 int command_merge(const Arguments& arguments);
 int command_verify(const Arguments& arguments);
 int command_submit(const Arguments& arguments);
 int command_tune(const Arguments& arguments);
 int command_profile(const Arguments& arguments);
 int command_info(const Arguments& arguments);
+int command_book_figure(const Arguments& arguments);
+int command_book_pair(const Arguments& arguments);
+int command_book_response(const Arguments& arguments);
 
 }  // namespace vantage::apps

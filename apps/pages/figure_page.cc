@@ -107,7 +107,7 @@ std::string describe_settings(const BookFigure& figure, const FigureSettings& in
   if (settings.seed) {
     parts.push_back(fmt::format("seed {}", *settings.seed));
   }
-  Settings of_methods("experiment", "");
+  Settings of_methods("book figure", "");
   MethodOverrides parameters = settings.parameters;
   add_shared_method_parameters(of_methods, parameters);
   const SettingValue values = of_methods.values();

@@ -136,6 +136,12 @@ const auto& command_answers() {
                  "'vantage submit' runs a sequence on a Slurm cluster"},
       WordAnswer{{"join", "concat"}, "", "'vantage merge' joins the parts of a run"},
       WordAnswer{{"resume", "continue"}, "", "'vantage run --resume' continues a run"},
+      WordAnswer{{"experiment"}, "", "it is now 'vantage book figure'"},
+      WordAnswer{{"response"}, "", "it is now 'vantage book response'"},
+      WordAnswer{{"generate"},
+                 "",
+                 "'vantage generate scene' renders artificial scenes; 'generate book' is now "
+                 "'vantage book pair'"},
       WordAnswer{{"version"}, "", "'vantage --version' prints the version"},
       WordAnswer{{"commands", "list", "usage"}, "", "'vantage help' lists the commands"},
   };

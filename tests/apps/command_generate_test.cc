@@ -17,7 +17,7 @@ TEST(GenerateCommand, BookPairsWithTruth) {
   for (const std::string_view name : kBookPairNames) {
     const std::string out = folder / std::string(name);
     const ProcessResult result =
-        run_vantage({"generate", "book", "--pattern", std::string(name), "-o", out});
+        run_vantage({"book", "pair", "--pattern", std::string(name), "-o", out});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(files_below(out),
                 ElementsAre("left-disparity.pfm", "left-occluded.png", "left.png",
@@ -34,8 +34,7 @@ TEST(GenerateCommand, BookPairsWithTruth) {
 TEST(GenerateCommand, NoiseGivesFloatImagesThatMatchReads) {
   const TemporaryFolder folder;
   const std::string out = folder / "noisy";
-  ASSERT_EQ(run_vantage({"generate", "book", "--noise", "2", "--width", "40", "-o", out}).exit_code,
-            0);
+  ASSERT_EQ(run_vantage({"book", "pair", "--noise", "2", "--width", "40", "-o", out}).exit_code, 0);
   const ProcessResult result = run_vantage({"match", out + "/left.pfm", out + "/right.pfm", "-o",
                                             folder / "map.pfm", "--disparities=0:9"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -116,19 +115,17 @@ TEST(GenerateCommand, AnyCameraLooksAtTheScene) {
 TEST(InputGenerateCommand, WrongUsageIsOneLineAndExit2) {
   const TemporaryFolder folder;
   const std::vector<std::vector<std::string>> misuses = {
-      {"book", "-o", folder / "o", "--pattern", "stripes"},
-      {"book", "-o", folder / "o", "--width", "0"},
-      {"book", "-o", folder / "o", "--seed", "-1"},
-      {"book"},
-      {"scene", "-o", folder / "o", "--frames", "0"},
-      {"scene", "-o", folder / "o", "--view", "99"},
-      {"scene", "-o", folder / "o", "--near", "1", "--far", "2"}};
+      {"book", "pair", "-o", folder / "o", "--pattern", "stripes"},
+      {"book", "pair", "-o", folder / "o", "--width", "0"},
+      {"book", "pair", "-o", folder / "o", "--seed", "-1"},
+      {"book", "pair"},
+      {"generate", "scene", "-o", folder / "o", "--frames", "0"},
+      {"generate", "scene", "-o", folder / "o", "--view", "99"},
+      {"generate", "scene", "-o", folder / "o", "--near", "1", "--far", "2"}};
   for (const auto& misuse : misuses) {
-    std::vector<std::string> arguments = {"generate"};
-    arguments.insert(arguments.end(), misuse.begin(), misuse.end());
-    const ProcessResult result = run_vantage(arguments);
+    const ProcessResult result = run_vantage(misuse);
     EXPECT_EQ(result.exit_code, 2) << misuse.back();
-    EXPECT_TRUE(is_one_line(result, "generate " + misuse.front()));
+    EXPECT_TRUE(is_one_line(result, misuse[0] + " " + misuse[1]));
   }
   EXPECT_THAT(files_below(folder.path()), IsEmpty());
 }

@@ -10,6 +10,7 @@
 namespace vantage {
 namespace command_match_test {
 
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -265,9 +266,13 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   ProcessResult result = run_vantage({"mach"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err, "vantage: unknown command 'mach', the nearest known one is 'match'\n");
-  result = run_vantage({"generate"});
+  result = run_vantage({"scene"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("'vantage generate scene'"));
+  EXPECT_THAT(result.err, HasSubstr("'vantage scene build' or 'vantage scene view'"));
+  // Names of before say what they are now.
+  EXPECT_THAT(run_vantage({"experiment", "6.16"}).err, HasSubstr("now 'vantage book figure'"));
+  EXPECT_THAT(run_vantage({"response", "a.png"}).err, HasSubstr("now 'vantage book response'"));
+  EXPECT_THAT(run_vantage({"generate", "book"}).err, HasSubstr("now 'vantage book pair'"));
   // What is not near is not suggested; what users of other programs mean is answered.
   EXPECT_EQ(run_vantage({"foo"}).err, "vantage: unknown command 'foo'; 'vantage help' lists all\n");
   EXPECT_EQ(run_vantage({"disparity"}).err,
@@ -279,7 +284,9 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   EXPECT_EQ(run_vantage({}).exit_code, 2);
   result = run_vantage({"--help"});
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.out, HasSubstr("generate book"));
+  // What pairs and films need stands first, the book last.
+  EXPECT_THAT(result.out, ContainsRegex("Stereo pairs\n  match.*\nSequences and films\n  run.*\n"
+                                        "Scharstein's book\n  book figure [^:]*\n\n'vantage help"));
   result = run_vantage({"match", "--help"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.out, HasSubstr("--disparities MIN:MAX"));

@@ -112,14 +112,14 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
       {"run", "--left", "l", "--right", "r", "-o", "d", "--save", "preview,disparity", "--save",
        "views", "--view", "0.5", "--in-flight", "3", "--format", "npy"},
       {"run", "--left", "l", "--right", "r", "-o", "d", "--view", "0.5"},
-      {"generate", "book", "-o", "d", "--pattern", "real-bars", "--noise", "0.25", "--seed", "7"},
+      {"book", "pair", "-o", "d", "--pattern", "real-bars", "--noise", "0.25", "--seed", "7"},
       {"generate", "scene", "-o", "d", "--frames", "9", "--near", "33.5"},
       {"eval", "a.pfm", "b.pfm", "--scale", "4", "--ignore-border", "3"},
       {"reproject", "a.pfm", "--cloud", "c.ply", "--cloud-min-confidence", "0.5",
        "--principal-point", "3,4.5", "--calibration-unit", "cm", "--cloud-filled"},
       {"match"}};
   for (auto arguments : commands) {
-    const bool two_words = arguments.front() == "generate";
+    const bool two_words = arguments.front() == "generate" || arguments.front() == "book";
     arguments.push_back("--print-config");
     const ProcessResult first = run_vantage(arguments);
     ASSERT_EQ(first.exit_code, 0) << first.err;

@@ -14,13 +14,13 @@
 namespace vantage::apps {
 namespace {
 
-struct BookJob {
+struct BookPairJob {
   BookPairOptions pair;
   CommonOptions common;
   std::string output;
 };
 
-void add_book_settings(Settings& settings, BookJob& job) {
+void add_pair_settings(Settings& settings, BookPairJob& job) {
   settings.start_group("Files");
   Setting& output = settings.path("output", job.output, "DIR", "Output folder");
   output.short_name = 'o';
@@ -73,17 +73,17 @@ void add_book_settings(Settings& settings, BookJob& job) {
 
 }  // namespace
 
-int command_generate_book(const Arguments& arguments) {
-  BookJob job;
-  Settings settings("generate book",
+int command_book_pair(const Arguments& arguments) {
+  BookPairJob job;
+  Settings settings("book pair",
                     "Generates a synthetic pair of the book with its true disparities.");
-  add_book_settings(settings, job);
+  add_pair_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
   settings.set_short_help(
       {"output", "pattern", "width", "height", "background-disparity", "front-disparity",
        "narrow-disparity", "noise", "float", "reference", "seed"},
-      {"vantage generate book -o pair", "vantage generate book --width 512 --height 512 -o pair",
-       "vantage generate book --noise 5 --seed 2 -o pair"});
+      {"vantage book pair -o pair", "vantage book pair --width 512 --height 512 -o pair",
+       "vantage book pair --noise 5 --seed 2 -o pair"});
   if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
@@ -115,7 +115,7 @@ int command_generate_book(const Arguments& arguments) {
   report.set_results({{"disparities", fmt::format("{}:{}", pair.search.min, pair.search.max)}});
   report.write(job.common.report);
   if (!job.common.quiet) {
-    tell("generate book: {}x{} pixels, search with --disparities={}:{} -> {}\n", pair.left.width(),
+    tell("book pair: {}x{} pixels, search with --disparities={}:{} -> {}\n", pair.left.width(),
          pair.left.height(), pair.search.min, pair.search.max, job.output);
     report.print_summary();
   }

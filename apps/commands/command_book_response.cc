@@ -180,9 +180,9 @@ SettingValue print_dominant(const CumulativeResponse& response) {
 
 }  // namespace
 
-int command_response(const Arguments& arguments) {
+int command_book_response(const Arguments& arguments) {
   ResponseJob job;
-  Settings settings("response",
+  Settings settings("book response",
                     "Sums the gradient evidence of a pair for a range of displacements, over the "
                     "image and its quadrants, and prints the maxima.");
   add_response_settings(settings, job);
@@ -190,9 +190,9 @@ int command_response(const Arguments& arguments) {
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(
       {"left", "right", "output", "plot", "displacements-x", "displacements-y", "threads", "quiet"},
-      {"vantage response left.png right.png -o response.csv --plot response.svg",
-       "vantage response left.png right.png -o response.csv --displacements-x 0:63",
-       "vantage response left.png right.png -o response.npy --displacements-y -4:4"});
+      {"vantage book response left.png right.png -o response.csv --plot response.svg",
+       "vantage book response left.png right.png -o response.csv --displacements-x 0:63",
+       "vantage book response left.png right.png -o response.npy --displacements-y -4:4"});
   if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
@@ -246,7 +246,7 @@ int command_response(const Arguments& arguments) {
   report.set_results(results);
   report.write(job.common.report);
   if (!job.common.quiet) {
-    tell("response: {}x{} pixels, displacements {} x {} -> {}\n", left.width(), left.height(),
+    tell("book response: {}x{} pixels, displacements {} x {} -> {}\n", left.width(), left.height(),
          to_text(options.displacements_x), to_text(options.displacements_y), job.output);
     report.print_summary();
   }

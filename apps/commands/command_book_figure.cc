@@ -34,7 +34,7 @@ namespace {
 
 constexpr const char* kPageName = "figures.html";
 
-struct ExperimentJob {
+struct FigureJob {
   std::vector<std::string> names;
   bool list = false;
   FigureSettings settings;
@@ -76,7 +76,7 @@ std::string names_of_methods() {
   return text;
 }
 
-void add_experiment_settings(Settings& settings, ExperimentJob& job) {
+void add_figure_settings(Settings& settings, FigureJob& job) {
   settings.start_group("Figures");
   Setting& names = add_list(
       settings, "figure", job.names,
@@ -95,7 +95,7 @@ void add_experiment_settings(Settings& settings, ExperimentJob& job) {
                                   {{"svg", FigurePictures::kSvg}, {"png", FigurePictures::kPng}},
                                   "File format of charts and pictures");
 
-  settings.start_group("Experiment (auto and empty lists: as in the book)");
+  settings.start_group("Settings (auto and empty lists: as in the book)");
   settings.integer("size", job.settings.size_px, "PX",
                    "Width and height of the synthetic pairs; of scenes: their width");
   add_list(settings, "iterations", job.settings.iterations, "Numbers of iterations", to_integer);
@@ -115,9 +115,9 @@ void add_experiment_settings(Settings& settings, ExperimentJob& job) {
   add_shared_method_parameters(settings, job.settings.parameters);
 }
 
-std::vector<const BookFigure*> figures_of(const ExperimentJob& job) {
+std::vector<const BookFigure*> figures_of(const FigureJob& job) {
   if (job.names.empty()) {
-    throw UsageError("FIGURE is missing; see 'vantage experiment --list'");
+    throw UsageError("FIGURE is missing; see 'vantage book figure --list'");
   }
   std::set<const BookFigure*> wanted;
   for (const std::string& name : job.names) {
@@ -157,22 +157,22 @@ std::string describe_machine(Execution& execution) {
 
 }  // namespace
 
-int command_experiment(const Arguments& arguments) {
-  ExperimentJob job;
+int command_book_figure(const Arguments& arguments) {
+  FigureJob job;
   Settings settings(
-      "experiment",
+      "book figure",
       "Computes figures and tables of D. Scharstein, View Synthesis Using Stereo Vision (1999): "
       "numbers (CSV), charts and pictures (SVG), and one page (HTML) with what the book says "
       "beside what came out.");
-  add_experiment_settings(settings, job);
+  add_figure_settings(settings, job);
   add_common_settings(settings, job.common);
   settings.set_short_help(
       {"figure", "list", "output", "size", "iterations", "noise", "methods", "pairs", "seed",
        "threads", "quiet"},
-      {"vantage experiment --list", "vantage experiment all -o figures",
-       "vantage experiment 6.16 6.17 -o figures",
-       "vantage experiment 6.10 --noise 0,4 --methods bayes,membrane -o figures",
-       "vantage experiment 6.9 --beta 0.2 -o figures"});
+      {"vantage book figure --list", "vantage book figure all -o figures",
+       "vantage book figure 6.16 6.17 -o figures",
+       "vantage book figure 6.10 --noise 0,4 --methods bayes,membrane -o figures",
+       "vantage book figure 6.9 --beta 0.2 -o figures"});
   if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
@@ -215,7 +215,7 @@ int command_experiment(const Arguments& arguments) {
   std::vector<MadeFigure> made;
   SettingValue results = SettingValue::object();
   {
-    Progress progress("experiment", "figures",
+    Progress progress("book figure", "figures",
                       job.common.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
     for (const BookFigure* figure : figures) {
       MadeFigure& one =
@@ -238,20 +238,20 @@ int command_experiment(const Arguments& arguments) {
   }
   if (interrupted) {
     if (!job.common.quiet) {
-      tell("experiment: interrupted\n");
+      tell("book figure: interrupted\n");
     }
     return kExitInterrupted;
   }
   report.timed_file_access("write", [&] {
     write_text_file(
         folder / kPageName,
-        make_figure_page(made, fmt::format("vantage experiment {}", fmt::join(arguments, " ")),
+        make_figure_page(made, fmt::format("vantage book figure {}", fmt::join(arguments, " ")),
                          describe_machine(execution)));
   });
   report.set_results(std::move(results));
   report.write(job.common.report);
   if (!job.common.quiet) {
-    tell("experiment: {} figures -> {}/{}\n", made.size(), job.output, kPageName);
+    tell("book figure: {} figures -> {}/{}\n", made.size(), job.output, kPageName);
     report.print_summary();
   }
   return kExitDone;

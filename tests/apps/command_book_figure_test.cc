@@ -9,7 +9,7 @@
 #include "tests/well_formed_xml.h"
 
 namespace vantage {
-namespace command_experiment_test {
+namespace command_book_figure_test {
 
 using testing::AllOf;
 using testing::ElementsAre;
@@ -24,9 +24,9 @@ int lines_of(const std::string& text) {
 TEST(ExperimentCommand, WritesNumbersChartsAndAPage) {
   const TemporaryFolder folder;
   const std::string out = folder / "deep/er";
-  const ProcessResult result = run_vantage({"experiment", "6.17", "6.9", "-o", out, "--size", "32",
-                                            "--iterations", "2,3", "--noise", "0,4", "--pairs",
-                                            "rds-square,real-bars", "--report", folder / "r.json"});
+  const ProcessResult result = run_vantage(
+      {"book", "figure", "6.17", "6.9", "-o", out, "--size", "32", "--iterations", "2,3", "--noise",
+       "0,4", "--pairs", "rds-square,real-bars", "--report", folder / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(files_below(out),
               ElementsAre("figure-6.17-bad.svg", "figure-6.17-book.csv", "figure-6.17.csv",
@@ -54,11 +54,11 @@ TEST(ExperimentCommand, MakesAllFigures) {
   const TemporaryFolder folder;
   const std::string out = folder / "all";
   const ProcessResult result =
-      run_vantage({"experiment", "all", "-o", out, "--size", "40", "--iterations", "1,2", "--noise",
-                   "1", "--pictures", "png", "--quiet"});
+      run_vantage({"book", "figure", "all", "-o", out, "--size", "40", "--iterations", "1,2",
+                   "--noise", "1", "--pictures", "png", "--quiet"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto files = files_below(out);
-  const ProcessResult list = run_vantage({"experiment", "--list"});
+  const ProcessResult list = run_vantage({"book", "figure", "--list"});
   ASSERT_EQ(list.exit_code, 0);
   int figures = 0;
   for (std::size_t begin = 0; begin < list.out.size(); begin = list.out.find('\n', begin) + 1) {
@@ -76,9 +76,9 @@ TEST(ExperimentCommand, MakesAllFigures) {
 
 TEST(ExperimentCommand, IsReproducible) {
   const TemporaryFolder folder;
-  const std::vector<std::string> arguments = {"experiment",   "6.16",        "--size",  "24",
-                                              "--pairs",      "real-square", "--noise", "0,1",
-                                              "--iterations", "1",           "--quiet", "-o"};
+  const std::vector<std::string> arguments = {
+      "book",    "figure", "6.16",         "--size", "24",      "--pairs", "real-square",
+      "--noise", "0,1",    "--iterations", "1",      "--quiet", "-o"};
   const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
     auto all = arguments;
     all.push_back(out);
@@ -98,7 +98,7 @@ TEST(ExperimentCommand, EachRowIsAnotherComputation) {
   const TemporaryFolder folder;
   const auto rows_of = [&folder](const std::string& figure, std::vector<std::string> more) {
     const std::string out = folder / ("rows-" + figure);
-    more.insert(more.begin(), {"experiment", figure, "-o", out, "--quiet", "--size", "24",
+    more.insert(more.begin(), {"book", "figure", figure, "-o", out, "--quiet", "--size", "24",
                                "--pairs", "rds-square"});
     const ProcessResult result = run_vantage(more);
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -127,7 +127,7 @@ TEST(ExperimentCommand, EachRowIsAnotherComputation) {
 }
 
 TEST(ExperimentCommand, SaysOnlyWhatFiguresRead) {
-  const ProcessResult list = run_vantage({"experiment", "--list"});
+  const ProcessResult list = run_vantage({"book", "figure", "--list"});
   const auto line_after = [&list](const std::string& title) {
     const std::size_t begin = list.out.find('\n', list.out.find(title)) + 1;
     return list.out.substr(begin, list.out.find('\n', begin) - begin);
@@ -137,8 +137,8 @@ TEST(ExperimentCommand, SaysOnlyWhatFiguresRead) {
   EXPECT_THAT(line_after("The membrane model"), HasSubstr("iterations 5, 10"));
   const TemporaryFolder folder;
   const ProcessResult result =
-      run_vantage({"experiment", "6.9", "6.11", "-o", folder / "o", "--iterations", "1", "--beta",
-                   "0.2", "--report", folder / "r.json", "--quiet"});
+      run_vantage({"book", "figure", "6.9", "6.11", "-o", folder / "o", "--iterations", "1",
+                   "--beta", "0.2", "--report", folder / "r.json", "--quiet"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const auto report = nlohmann::json::parse(read_file(folder / "r.json"));
   EXPECT_EQ(report["results"]["6.9"]["settings"], "iterations 1; beta 0.2");
@@ -163,8 +163,8 @@ TEST_F(ExperimentPhotographs, TakeThePlaceOfGeneratedScenes) {
   std::filesystem::copy(left_, row + "/im4.png");
   std::filesystem::copy(truth, row + "/disp2.pfm");
   const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"experiment", "3.9",     "5.8",           "-o",
-                                          out,          "--quiet", "--disparities", "0:9"};
+    std::vector<std::string> arguments = {"book", "figure",  "3.9",           "5.8", "-o",
+                                          out,    "--quiet", "--disparities", "0:9"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProcessResult result = run_vantage(arguments);
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -181,7 +181,7 @@ TEST_F(ExperimentPhotographs, TakeThePlaceOfGeneratedScenes) {
   EXPECT_THAT(read_file(folder_ / "d/figure-3.9.csv"), Not(HasSubstr(",,,")));
   EXPECT_NE(read_file(folder_ / "c/figures.html").find("Middlebury 2014"), std::string::npos);
   const ProcessResult unknown =
-      run_vantage({"experiment", "3.9", "-o", folder_ / "e", "--data", folder_.path()});
+      run_vantage({"book", "figure", "3.9", "-o", folder_ / "e", "--data", folder_.path()});
   EXPECT_EQ(unknown.exit_code, 1);
   EXPECT_THAT(unknown.err, HasSubstr("no scene of Middlebury: expected"));
 }
@@ -214,18 +214,19 @@ TEST(InputExperimentCommand, BadInputIsOneLineAndExit2) {
       {{"3.9", "-o", out, "--disparities", "0:9"}, "--disparities has no effect without"},
       {{"6.16", "-o", out, "--iterations", "-1"}, "iterations is -1"}};
   for (const auto& [more, says] : misuses) {
-    std::vector<std::string> arguments = {"experiment"};
+    std::vector<std::string> arguments = {"book", "figure"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProcessResult result = run_vantage(arguments);
     EXPECT_EQ(result.exit_code, 2) << says;
-    EXPECT_TRUE(is_one_line(result, "experiment"));
+    EXPECT_TRUE(is_one_line(result, "book figure"));
     EXPECT_THAT(result.err, HasSubstr(says));
   }
   EXPECT_THAT(files_below(folder.path()), IsEmpty());
   write_file(folder / "file", "x");
   EXPECT_EQ(
-      run_vantage({"experiment", "6.9", "-o", folder / "file", "--iterations", "1"}).exit_code, 1);
+      run_vantage({"book", "figure", "6.9", "-o", folder / "file", "--iterations", "1"}).exit_code,
+      1);
 }
 
-}  // namespace command_experiment_test
+}  // namespace command_book_figure_test
 }  // namespace vantage

@@ -15,7 +15,7 @@
 #include "tests/well_formed_xml.h"
 
 namespace vantage {
-namespace command_response_test {
+namespace command_book_response_test {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -24,7 +24,7 @@ class ResponseCommand : public PairTest {
  protected:
   [[nodiscard]] ProcessResult response(const std::string& out,
                                        const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"response", left_, right_, "-o", out};
+    std::vector<std::string> arguments = {"book", "response", left_, right_, "-o", out};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_vantage(arguments);
   }
@@ -128,11 +128,11 @@ TEST_F(InputResponseCommand, BadInputIsOneLine) {
   for (const auto& [arguments, says] : misuses) {
     const ProcessResult result = response(out, arguments);
     EXPECT_EQ(result.exit_code, 2) << says;
-    EXPECT_TRUE(is_one_line(result, "response"));
+    EXPECT_TRUE(is_one_line(result, "book response"));
     EXPECT_THAT(result.err, HasSubstr(says));
   }
   EXPECT_EQ(response(folder_ / "r.txt").exit_code, 2);
-  EXPECT_EQ(run_vantage({"response", left_, folder_ / "none.png", "-o", out}).exit_code, 1);
+  EXPECT_EQ(run_vantage({"book", "response", left_, folder_ / "none.png", "-o", out}).exit_code, 1);
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
@@ -140,8 +140,9 @@ TEST_F(ResponseCommand, ConstantImagesHaveNoneAndStillWriteTheirData) {
   Image<std::uint8_t> grey(40, 30);
   grey.fill(77);
   write_photograph(folder_ / "grey.png", {std::move(grey)});
-  const ProcessResult result = run_vantage({"response", folder_ / "grey.png", folder_ / "grey.png",
-                                            "-o", folder_ / "r.csv", "--plot", folder_ / "r.svg"});
+  const ProcessResult result =
+      run_vantage({"book", "response", folder_ / "grey.png", folder_ / "grey.png", "-o",
+                   folder_ / "r.csv", "--plot", folder_ / "r.svg"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("none"));
   EXPECT_EQ(read_xml(read_file(folder_ / "r.svg")).error, "");
@@ -414,5 +415,5 @@ TEST_F(AutomaticDisparities, OfTwoDimensions) {
   EXPECT_GT(share_at(folder_ / "o.flo", kHeight, kWidth, -kDown, -kAcross), 0.9);
 }
 
-}  // namespace command_response_test
+}  // namespace command_book_response_test
 }  // namespace vantage
