@@ -11,8 +11,12 @@ options vantage.UsageError, which is a ValueError, too; each is one line. Calls 
 share one pool of threads; Ctrl-C interrupts them. docs/python.md is a tutorial.
 """
 
+from __future__ import annotations
+
 import atexit as _atexit
 import weakref as _weakref
+from dataclasses import dataclass as _dataclass
+from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 import numpy as _np
 
@@ -27,6 +31,24 @@ __all__ = [
     "synthesize", "write_cloud", "write_depth", "write_disparity", "write_image", "write_mesh",
 ]
 
+if _TYPE_CHECKING:  # at run time they would be names of this module
+    import os
+    from collections.abc import Iterator, Mapping
+    from collections.abc import Sequence as _Sequence
+    from typing import Any, Literal
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    _Path = str | os.PathLike[str]
+    _Image = NDArray[np.uint8] | NDArray[np.uint16] | NDArray[np.float32]
+    _Range = tuple[int, int] | str
+    _Rig = Calibration | _Path | None
+    _Map = NDArray[np.float32] | NDArray[np.float64]
+    _Mask = NDArray[np.bool_] | NDArray[np.uint8]
+    _Preset = Literal["realtime", "fast", "balanced", "quality"] | None
+    _Numbers = NDArray[Any] | _Sequence[Any]
+    _Position = float | tuple[float, float] | Mapping[str, Any]
 
 _loops = _weakref.WeakSet()
 
@@ -46,8 +68,8 @@ class Matcher:
     Several threads may use one matcher at a time. Processes get it by its options (pickle).
     """
 
-    def __init__(self, preset=None, disparities="auto", *, unrectified=None,
-                 rectified_pixels=False, **options):
+    def __init__(self, preset: _Preset = None, disparities: _Range = "auto", *,
+                 unrectified: _Rig = None, rectified_pixels: bool = False, **options: Any) -> None:
         self._set(_calibration_of(unrectified), bool(rectified_pixels),
                   {"preset": preset, "disparities": disparities, **options})
 
@@ -64,8 +86,9 @@ class Matcher:
     def __setstate__(self, given):
         self._set(*given)
 
-    def compute(self, left, right, *, more=(), baselines=(), bgr=False, right_disparity=False,
-                confidence=False, posterior=False):
+    def compute(self, left: _Image, right: _Image, *, more: _Sequence[_Image] = (),
+                baselines: _Sequence[float] = (), bgr: bool = False, right_disparity: bool = False,
+                confidence: bool = False, posterior: bool = False) -> MatchResult:
         """The maps of images of equal size, a MatchResult.
 
         left, right: arrays of uint8, uint16 or float32 (0 to 1), HxW or HxWx3.
@@ -83,8 +106,11 @@ class Matcher:
             left, right, list(more), [float(b) for b in baselines], bool(bgr),
             bool(right_disparity), bool(confidence), bool(posterior))
 
-    def volume(self, left, right, *, kind="aggregated", level=0, rows=None, max_bytes=None,
-               more=(), baselines=(), bgr=False):
+    def volume(self, left: _Image, right: _Image, *,
+               kind: Literal["aggregated", "costs"] = "aggregated", level: int = 0,
+               rows: tuple[int, int] | None = None, max_bytes: int | None = None,
+               more: _Sequence[_Image] = (), baselines: _Sequence[float] = (),
+               bgr: bool = False) -> Volume:
         """The disparity space of the map's image, a Volume, as `vantage match --volume` writes it.
 
         kind: "costs" before aggregation, or "aggregated": what winners are selected from, with
@@ -100,12 +126,12 @@ class Matcher:
     __call__ = compute
 
     @property
-    def options(self):
+    def options(self) -> dict[str, Any]:
         """All options as a dict; "auto" where preset, method or pair decide."""
         return self._native.options()
 
     @property
-    def threads(self):
+    def threads(self) -> int:
         """Number of threads that calls share."""
         return self._native.threads
 
@@ -126,8 +152,8 @@ class Volume:
     """
 
     def __init__(self, values, disparities, step, disparities_y, content, level, first_row):
-        self.values = values
-        self.disparities = disparities[0] + step * _np.arange(values.shape[-1])
+        self.values: NDArray[np.float32] = values
+        self.disparities: NDArray[np.float64] = disparities[0] + step * _np.arange(values.shape[-1])
         self.disparities_y = (
             None if disparities_y is None else _np.arange(disparities_y[0], disparities_y[1] + 1))
         self.content = content
@@ -139,6 +165,7 @@ class Volume:
         return f"<vantage.Volume: {self.content}, {shape}>"
 
 
+@_dataclass(eq=False, repr=False)
 class RectifiedImages:
     """What rectify() returns; left, right = rectify(...) takes it apart.
 
@@ -149,19 +176,19 @@ class RectifiedImages:
     valid_region: (x, y, width, height) of the part without black pixels.
     """
 
-    def __init__(self, left, right, calibration, cameras, row_error_px, valid_region):
-        self.left = left
-        self.right = right
-        self.calibration = calibration
-        self.cameras = cameras
-        self.row_error_px = row_error_px
-        self.valid_region = valid_region
+    left: NDArray[Any]
+    right: NDArray[Any]
+    calibration: Calibration
+    cameras: Calibration
+    row_error_px: float | None
+    valid_region: tuple[int, int, int, int]
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[NDArray[Any]]:
         return iter((self.left, self.right))
 
 
-def rectify(left, right, calibration=None, *, kept_outline=0.0, bgr=False, **options):
+def rectify(left: _Image, right: _Image, calibration: _Rig = None, *, kept_outline: float = 0.0,
+            bgr: bool = False, **options: Any) -> RectifiedImages:
     """Rectifies a pair; without a calibration (or the path of one) the cameras are estimated from
     the images, up to scale: the baseline then has length 1.
 
@@ -171,8 +198,11 @@ def rectify(left, right, calibration=None, *, kept_outline=0.0, bgr=False, **opt
         left, right, _calibration_of(calibration), float(kept_outline), bool(bgr), options))
 
 
-def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, calibration=None,
-               bgr=False, **options):
+def synthesize(left: _Image, right: _Image,
+               view: _Position | list[_Position] | NDArray[Any] | None = None, *,
+               disparity: NDArray[np.float32] | None = None,
+               right_disparity: NDArray[np.float32] | None = None, calibration: _Rig = None,
+               bgr: bool = False, **options: Any) -> Any:
     """New views of a pair, as `vantage synth` makes them: an array like `left`, or a list of them.
 
     view: a position in baselines (0: left camera, 1: right camera) or (x, y), or a camera as a dict
@@ -203,7 +233,8 @@ def synthesize(left, right, view=None, *, disparity=None, right_disparity=None, 
     return arrays[0] if single else arrays
 
 
-def reproject(disparity, calibration, *, reference="left", **options):
+def reproject(disparity: _Map, calibration: Calibration | _Path | _Numbers, *,
+              reference: Literal["left", "right"] = "left", **options: Any) -> NDArray[np.float32]:
     """Points of a disparity map: float32, HxWx3, in the unit of the calibration.
 
     X is to the right, Y down and Z ahead of the rectified left camera. NaN where the disparity is
@@ -222,7 +253,7 @@ def reproject(disparity, calibration, *, reference="left", **options):
                               {"reference": reference, **options})
 
 
-def depth(disparity, calibration=None, **options):
+def depth(disparity: _Map, calibration: _Rig = None, **options: Any) -> NDArray[np.float32]:
     """Depths of a disparity map in metres: float32, HxW; NaN: unknown, or beyond max_depth.
 
     disparity: float32 or float64, HxW. calibration: Calibration of rectified images (or the path of
@@ -233,7 +264,8 @@ def depth(disparity, calibration=None, **options):
     return _vantage.depth(disparity, _calibration_of(calibration), options)
 
 
-def depth_resolution(disparity, calibration=None, **options):
+def depth_resolution(disparity: _Map, calibration: _Rig = None,
+                     **options: Any) -> NDArray[np.float32]:
     """Distance from each depth to the next distinguishable one: float32, HxW, in metres,
     or in the calibration's unit where its length is not known.
 
@@ -243,8 +275,9 @@ def depth_resolution(disparity, calibration=None, **options):
     return _vantage.depth_resolution(disparity, _calibration_of(calibration), options)
 
 
-def cloud(disparity, image, calibration=None, *, unmatched=None, confidence=None, bgr=False,
-          **options):
+def cloud(disparity: _Map, image: _Image, calibration: _Rig = None, *,
+          unmatched: _Mask | None = None, confidence: _Map | None = None, bgr: bool = False,
+          **options: Any) -> PointCloud:
     """The pixels of a disparity map as points in metres, a PointCloud, as `vantage reproject` makes
     them. For a MatchResult use its cloud().
 
@@ -259,8 +292,9 @@ def cloud(disparity, image, calibration=None, *, unmatched=None, confidence=None
                           bool(bgr), options)
 
 
-def mesh(disparity, image, calibration=None, *, unmatched=None, confidence=None, bgr=False,
-         **options):
+def mesh(disparity: _Map, image: _Image, calibration: _Rig = None, *,
+         unmatched: _Mask | None = None, confidence: _Map | None = None, bgr: bool = False,
+         **options: Any) -> Mesh:
     """The points as a surface of triangles, a Mesh, cut where the disparity jumps. Arguments as of
     cloud(). For a MatchResult use its mesh().
     """
@@ -268,6 +302,7 @@ def mesh(disparity, image, calibration=None, *, unmatched=None, confidence=None,
                          bool(bgr), options)
 
 
+@_dataclass(eq=False, repr=False)
 class Frame:
     """A frame of a Sequence.
 
@@ -282,23 +317,21 @@ class Frame:
     remarks: list of texts.
     """
 
-    def __init__(self, index, name, left, right, result, views, holes, sources, stereo, flicker,
-                 share_reused, remarks):
-        self.index = index
-        self.name = name
-        self.left = left
-        self.right = right
-        self.result = result
-        self.views = views
-        self.holes = holes
-        self.sources = sources
-        self.stereo = stereo
-        self.flicker = flicker
-        self.share_reused = share_reused
-        self.remarks = remarks
+    index: int
+    name: str
+    left: NDArray[Any]
+    right: NDArray[Any]
+    result: MatchResult
+    views: list[NDArray[Any]]
+    holes: list[NDArray[np.bool_]]
+    sources: list[NDArray[np.uint8]]
+    stereo: NDArray[Any] | None
+    flicker: dict[str, Any] | None
+    share_reused: float | None
+    remarks: list[str]
 
     @property
-    def disparity(self):
+    def disparity(self) -> NDArray[np.float32]:
         """That of the result."""
         return self.result.disparity
 
@@ -334,8 +367,11 @@ class Sequence:
     changes of all frames, as the report of `vantage run` has them (None: not measured).
     """
 
-    def __init__(self, left=None, right=None, *, frames=None, calibration=None, unrectified=None,
-                 rectified_pixels=False, preset=None, disparities="auto", save=None, **options):
+    def __init__(self, left: _Path | None = None, right: _Path | None = None, *,
+                 frames: range | slice | str | None = None, calibration: _Rig = None,
+                 unrectified: _Rig = None, rectified_pixels: bool = False, preset: _Preset = None,
+                 disparities: _Range = "auto", save: str | _Sequence[str] | None = None,
+                 **options: Any) -> None:
         if save is not None:
             names = save.split(",") if isinstance(save, str) else save
             options["save"] = [name.replace("_", "-") for name in names]
@@ -366,13 +402,13 @@ class Sequence:
             raise UsageError(f"frames is {frames!r}, expected increasing numbers")
         return chosen
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._frames)
 
     def __repr__(self):
         return f"<vantage.Sequence: {len(self)} frames>"
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[Frame]:
         loop = self._native.loop(list(self._frames))
         _loops.add(loop)
         try:
@@ -391,17 +427,17 @@ def _end_loops():
         loop.close()
 
 
-def read_image(path, *, bgr=False):
+def read_image(path: _Path, *, bgr: bool = False) -> NDArray[Any]:
     """Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR or PFM: uint8, uint16 or float32."""
     return _vantage.read_image(path, bool(bgr))
 
 
-def write_image(path, image, *, bgr=False):
+def write_image(path: _Path, image: _Image, *, bgr: bool = False) -> None:
     """Writes an image; the extension is the format."""
     _vantage.write_image(path, image, bool(bgr))
 
 
-def read_disparity(path, scale=0.0):
+def read_disparity(path: _Path, scale: float = 0.0) -> NDArray[np.float32]:
     """Reads a disparity map (PFM, PNG, TIFF, EXR, NPY): float32, NaN where it is unknown.
 
     scale divides the values of integer files; 0: 256 for 16-bit PNG.
@@ -409,31 +445,31 @@ def read_disparity(path, scale=0.0):
     return _vantage.read_disparity(path, float(scale))
 
 
-def write_disparity(path, disparity):
+def write_disparity(path: _Path, disparity: _Map) -> None:
     """Writes a disparity map; the extension is the format: .pfm .png .tiff .exr .npy."""
     _vantage.write_disparity(path, disparity)
 
 
-def write_depth(path, depth):
+def write_depth(path: _Path, depth: _Map) -> None:
     """Writes depths in metres, float32 or float64, HxW, NaN unknown; the extension is the format:
     .png in millimetres (16 bits, 0 unknown, also beyond 65.535 m), .pfm .tiff .exr .npy in metres.
     """
     _vantage.write_depth(path, depth)
 
 
-def write_cloud(path, cloud):
+def write_cloud(path: _Path, cloud: PointCloud) -> None:
     """Writes a PointCloud as a binary PLY file."""
     _require_type("cloud", cloud, PointCloud)
     _vantage.write_cloud(path, cloud)
 
 
-def write_mesh(path, mesh):
+def write_mesh(path: _Path, mesh: Mesh) -> None:
     """Writes a Mesh as a binary PLY file."""
     _require_type("mesh", mesh, Mesh)
     _vantage.write_mesh(path, mesh)
 
 
-def colours(disparity, limits=None):
+def colours(disparity: _Map, limits: tuple[float, float] | None = None) -> NDArray[np.uint8]:
     """The map in false colours (Turbo; unknown is black): uint8, HxWx3, RGB.
 
     limits: disparities of the first and the last colour; default: from the map.

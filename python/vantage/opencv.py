@@ -87,97 +87,44 @@ class StereoVantage:
             return disparity
         return fixed
 
-    def getMinDisparity(self):
-        """The smallest disparity, in pixels."""
-        return self._values["minDisparity"]
-
-    def setMinDisparity(self, minDisparity):
-        """Moves the range."""
-        self._set(minDisparity=minDisparity)
-
-    def getNumDisparities(self):
-        """The number of disparities."""
-        return self._values["numDisparities"]
-
-    def setNumDisparities(self, numDisparities):
-        """Changes it; any number of at least 1."""
-        self._set(numDisparities=numDisparities)
-
-    def getDisp12MaxDiff(self):
-        """The difference of left and right disparities that is accepted."""
-        return self._values["disp12MaxDiff"]
-
-    def setDisp12MaxDiff(self, disp12MaxDiff):
-        """Changes it, in whole pixels; up to 0: the check of the preset."""
-        self._set(disp12MaxDiff=disp12MaxDiff)
-
-    def getSpeckleWindowSize(self):
-        """The size of the largest speckle."""
-        return self._values["speckleWindowSize"]
-
-    def setSpeckleWindowSize(self, speckleWindowSize):
-        """Changes it, in pixels; up to 0: that of the preset."""
-        self._set(speckleWindowSize=speckleWindowSize)
-
-    def getSpeckleRange(self):
-        """The given value; speckles are always those of 1."""
-        return self._values["speckleRange"]
-
-    def setSpeckleRange(self, speckleRange):
-        """Without effect: speckles are always those of 1."""
-        self._set(speckleRange=speckleRange)
-
-    def getBlockSize(self):
-        """The given value."""
-        return self._values["blockSize"]
-
-    def setBlockSize(self, blockSize):
-        """Without effect."""
-        self._set(blockSize=blockSize)
-
-    def getP1(self):
-        """The given value."""
-        return self._values["P1"]
-
-    def setP1(self, P1):
-        """Without effect."""
-        self._set(P1=P1)
-
-    def getP2(self):
-        """The given value."""
-        return self._values["P2"]
-
-    def setP2(self, P2):
-        """Without effect."""
-        self._set(P2=P2)
-
-    def getPreFilterCap(self):
-        """The given value."""
-        return self._values["preFilterCap"]
-
-    def setPreFilterCap(self, preFilterCap):
-        """Without effect."""
-        self._set(preFilterCap=preFilterCap)
-
-    def getUniquenessRatio(self):
-        """The given value."""
-        return self._values["uniquenessRatio"]
-
-    def setUniquenessRatio(self, uniquenessRatio):
-        """Without effect; the option confidence_threshold discards doubtful matches."""
-        self._set(uniquenessRatio=uniquenessRatio)
-
-    def getMode(self):
-        """The given value."""
-        return self._values["mode"]
-
-    def setMode(self, mode):
-        """Without effect; presets take its place."""
-        self._set(mode=mode)
-
     def __repr__(self):
         return (f"<vantage.opencv.StereoVantage: minDisparity {self.getMinDisparity()}, "
                 f"numDisparities {self.getNumDisparities()}>")
+
+
+# What get…() and set…() of each parameter say.
+_PARAMETERS = {
+    "minDisparity": ("The smallest disparity, in pixels.", "Moves the range."),
+    "numDisparities": ("The number of disparities.", "Changes it; any number of at least 1."),
+    "disp12MaxDiff": ("The difference of left and right disparities that is accepted.",
+                      "Changes it, in whole pixels; up to 0: the check of the preset."),
+    "speckleWindowSize": ("The size of the largest speckle.",
+                          "Changes it, in pixels; up to 0: that of the preset."),
+    "speckleRange": ("The given value; speckles are always those of 1.",
+                     "Without effect: speckles are always those of 1."),
+    "uniquenessRatio": ("The given value.", "Without effect; the option confidence_threshold "
+                                            "discards doubtful matches."),
+    "mode": ("The given value.", "Without effect; presets take its place."),
+    **dict.fromkeys(("blockSize", "P1", "P2", "preFilterCap"),
+                    ("The given value.", "Without effect."))}
+
+
+def _add_accessors(name, of_get, of_set):
+    def get(self):
+        return self._values[name]
+
+    def set(self, value):
+        self._set(**{name: value})
+
+    for prefix, function, text in [("get", get, of_get), ("set", set, of_set)]:
+        function.__name__ = prefix + name[0].upper() + name[1:]
+        function.__qualname__ = f"StereoVantage.{function.__name__}"
+        function.__doc__ = text
+        setattr(StereoVantage, function.__name__, function)
+
+
+for _name, _texts in _PARAMETERS.items():
+    _add_accessors(_name, *_texts)
 
 
 def StereoVantage_create(*arguments, **options):
