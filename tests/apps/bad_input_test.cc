@@ -1,13 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/apps/pair_fixture.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace bad_input_test {
-
-using testing::HasSubstr;
+namespace vantage::bad_input_test {
 
 using InputBadFiles = PairTest;
 
@@ -44,12 +39,9 @@ TEST_F(InputBadFiles, ImagesThatCannotBeMatched) {
     const std::string file = folder_ / name;
     write_file(file, content);
     const auto before = files_below(folder_.path());
-    const ProcessResult result =
-        run_vantage({"match", file, file, "-o", folder_ / "out.pfm", "--preview",
-                     folder_ / "preview.png", "--report", folder_ / "report.json"});
-    EXPECT_EQ(result.exit_code, 1) << name;
-    EXPECT_TRUE(is_one_line(result, "match")) << name;
-    EXPECT_THAT(result.err, HasSubstr(name));
+    expect_one_line(run_vantage({"match", file, file, "-o", folder_ / "out.pfm", "--preview",
+                                 folder_ / "preview.png", "--report", folder_ / "report.json"}),
+                    1, "match", name);
     EXPECT_EQ(files_below(folder_.path()), before);
   }
 }
@@ -58,10 +50,10 @@ TEST_F(InputBadFiles, JsonNestedToAnyDepth) {
   const std::string deep = std::string(100000, '[') + std::string(100000, ']');
   write_file(folder_ / "poses.json", "{\"view\":" + deep + "}");
   write_file(folder_ / "profile.json", "{\"profile_schema\":" + deep + "}");
-  std::filesystem::create_directories(folder_ / "run/.vantage");
+  fs::create_directories(folder_ / "run/.vantage");
   write_file(folder_ / "run/.vantage/run.json", "{\"format\":" + deep + "}");
   write_file(folder_ / "run/scene.json", "{\"format\":" + deep + "}");
-  const std::vector<std::pair<std::vector<std::string>, int>> cases = {
+  const std::vector<std::pair<Words, int>> cases = {
       {{"synth", left_, right_, "--disparities=0:9", "--pose", folder_ / "poses.json", "-o",
         folder_ / "view.png"},
        2},
@@ -69,7 +61,7 @@ TEST_F(InputBadFiles, JsonNestedToAnyDepth) {
       {{"merge", folder_ / "run"}, 1},
       {{"scene info", folder_ / "run"}, 1}};
   for (const auto& [arguments, exit_code] : cases) {
-    std::vector<std::string> words = arguments;
+    Words words = arguments;
     if (words.front() == "scene info") {
       words.front() = "scene";
       words.insert(words.begin() + 1, "info");
@@ -81,8 +73,7 @@ TEST_F(InputBadFiles, JsonNestedToAnyDepth) {
   }
   write_file(folder_ / "tuning.json", "{\"kind\":" + deep + "}");
   const ProcessResult result =
-      match(folder_ / "map.pfm", {"--tuning", folder_ / "tuning.json", "--method=ssd"});
-  EXPECT_EQ(result.exit_code, 0);
+      succeeds(match(folder_ / "map.pfm", {"--tuning", folder_ / "tuning.json", "--method=ssd"}));
   EXPECT_THAT(result.err, HasSubstr("nested too deep"));
 }
 
@@ -93,11 +84,9 @@ TEST_F(InputBadFiles, DamagedPixelsAndOddNamesAreOneLine) {
   jpeg.erase(jpeg.size() / 2, jpeg.size() / 4);
   const std::string odd = "odd\n\x1B[31m.jpg";
   write_file(folder_ / odd, jpeg);
-  const ProcessResult result =
-      run_vantage({"match", folder_ / odd, right_, "--disparities=0:9", "-o", folder_ / "map.pfm"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "match")) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("odd\\n\\x1B[31m.jpg: is damaged"));
+  expect_one_line(
+      run_vantage({"match", folder_ / odd, right_, "--disparities=0:9", "-o", folder_ / "map.pfm"}),
+      1, "match", "odd\\n\\x1B[31m.jpg: is damaged");
   const ProcessResult option =
       match(folder_ / "map.pfm", {"--method=" + std::string(3000, 'x') + "\x1B"});
   EXPECT_EQ(option.exit_code, 2);
@@ -106,10 +95,9 @@ TEST_F(InputBadFiles, DamagedPixelsAndOddNamesAreOneLine) {
 }
 
 TEST_F(InputBadFiles, LimitsOfPixelsAndMemory) {
-  const ProcessResult large = match(folder_ / "map.pfm", {"--max-pixels=3000"});
-  EXPECT_EQ(large.exit_code, 1);
-  EXPECT_THAT(large.err, HasSubstr("71x53 pixels, expected at most 65500 a side and 3000 in all"));
-  EXPECT_EQ(match(folder_ / "map.pfm", {"--max-pixels=3763", "--memory=1G"}).exit_code, 0);
+  expect_failure(match(folder_ / "map.pfm", {"--max-pixels=3000"}), 1,
+                 "71x53 pixels, expected at most 65500 a side and 3000 in all");
+  succeeds(match(folder_ / "map.pfm", {"--max-pixels=3763", "--memory=1G"}));
   EXPECT_EQ(match(folder_ / "map.pfm", {"--max-pixels=0"}).exit_code, 2);
   EXPECT_EQ(match(folder_ / "map.pfm", {"--memory=0"}).exit_code, 2);
   if (test_paths::is_sanitized()) {
@@ -129,7 +117,7 @@ TEST_F(InputBadFiles, LimitsOfPixelsAndMemory) {
 
 TEST_F(InputBadFiles, PairsThatDoNotGoTogether) {
   write_photograph(folder_ / "small.png", {Image<std::uint8_t>(3, 3)});
-  const std::vector<std::vector<std::string>> cases = {
+  const std::vector<Words> cases = {
       {"match", left_, folder_ / "none.png"},
       {"match", left_, folder_.path().string()},
       {"match", left_, folder_ / "small.png"},
@@ -137,21 +125,19 @@ TEST_F(InputBadFiles, PairsThatDoNotGoTogether) {
       {"match", left_, right_, "--disparities=-90:-71"},
       {"synth", left_, folder_ / "small.png", "--view", "0.5"}};
   const auto before = files_below(folder_.path());
-  for (std::vector<std::string> arguments : cases) {
+  for (Words arguments : cases) {
     const std::string command = arguments.front();
     arguments.insert(arguments.end(),
                      {"-o", folder_ / (command == "match" ? "out.pfm" : "out.png")});
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 1) << arguments[2];
-    EXPECT_TRUE(is_one_line(result, command));
+    expect_one_line(run_vantage(arguments), 1, command);
   }
   EXPECT_EQ(files_below(folder_.path()), before);
 }
 
 TEST_F(InputBadFiles, OutputsThatCannotBeWritten) {
-  std::filesystem::create_directory(folder_ / "folder.pfm");
+  fs::create_directory(folder_ / "folder.pfm");
   const auto before = files_below(folder_.path());
-  const std::vector<std::vector<std::string>> cases = {
+  const std::vector<Words> cases = {
       {"-o", folder_ / "none/out.pfm"},
       {"-o", folder_ / "folder.pfm"},
       {"-o", left_ + "/out.pfm"},
@@ -159,12 +145,8 @@ TEST_F(InputBadFiles, OutputsThatCannotBeWritten) {
       {"-o", folder_ / "out.pfm", "--report", folder_ / "none/report.json"},
       {"-o", folder_ / "out.pfm", "--preview", folder_ / "none/preview.png"}};
   for (const auto& outputs : cases) {
-    std::vector<std::string> arguments = {"match", left_, right_, "--disparities=0:9"};
-    arguments.insert(arguments.end(), outputs.begin(), outputs.end());
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 1) << outputs.back();
-    EXPECT_TRUE(is_one_line(result, "match"));
-    EXPECT_THAT(result.err, HasSubstr(outputs.back()));
+    expect_one_line(run_vantage(joined({"match", left_, right_, "--disparities=0:9"}, outputs)), 1,
+                    "match", outputs.back());
     EXPECT_EQ(files_below(folder_.path()), before);
   }
 }
@@ -173,11 +155,9 @@ TEST_F(InputBadFiles, OnePixelPairsWork) {
   Image<std::uint8_t> pixel(1, 1);
   pixel.fill(77);
   write_photograph(folder_ / "pixel.png", {std::move(pixel)});
-  const ProcessResult result = run_vantage({"match", folder_ / "pixel.png", folder_ / "pixel.png",
-                                            "--disparities", "0:63", "-o", folder_ / "o.pfm"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(run_vantage({"match", folder_ / "pixel.png", folder_ / "pixel.png", "--disparities",
+                        "0:63", "-o", folder_ / "o.pfm"}));
   EXPECT_EQ(read_disparity(folder_ / "o.pfm").at(0, 0), 0);
 }
 
-}  // namespace bad_input_test
-}  // namespace vantage
+}  // namespace vantage::bad_input_test

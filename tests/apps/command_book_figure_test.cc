@@ -1,21 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 
-#include "tests/apps/pair_fixture.h"
+#include "tests/apps/sampling.h"
 #include "tests/well_formed_xml.h"
 
-namespace vantage {
-namespace command_book_figure_test {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+namespace vantage::command_book_figure_test {
 
 int lines_of(const std::string& text) {
   return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
@@ -24,10 +12,9 @@ int lines_of(const std::string& text) {
 TEST(ExperimentCommand, WritesNumbersChartsAndAPage) {
   const TemporaryFolder folder;
   const std::string out = folder / "deep/er";
-  const ProcessResult result = run_vantage(
-      {"book", "figure", "6.17", "6.9", "-o", out, "--size", "32", "--iterations", "2,3", "--noise",
-       "0,4", "--pairs", "rds-square,real-bars", "--report", folder / "r.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(run_vantage({"book", "figure", "6.17", "6.9", "-o", out, "--size", "32", "--iterations",
+                        "2,3", "--noise", "0,4", "--pairs", "rds-square,real-bars", "--report",
+                        folder / "r.json"}));
   EXPECT_THAT(files_below(out),
               ElementsAre("figure-6.17-bad.svg", "figure-6.17-book.csv", "figure-6.17.csv",
                           "figure-6.9-book.csv", "figure-6.9-levels.svg", "figure-6.9-sections.svg",
@@ -43,7 +30,7 @@ TEST(ExperimentCommand, WritesNumbersChartsAndAPage) {
   EXPECT_THAT(page, AllOf(HasSubstr("id=\"figure-6.9\""), HasSubstr("id=\"figure-6.17\""),
                           HasSubstr("<svg"), Not(HasSubstr("src=\"http")), Not(HasSubstr("{{"))));
   EXPECT_LT(page.find("id=\"figure-6.9\""), page.find("id=\"figure-6.17\""));
-  const auto report = nlohmann::json::parse(read_file(folder / "r.json"));
+  const auto report = read_json(folder / "r.json");
   EXPECT_EQ(report["results"]["6.17"]["files"].size(), 3U);
   EXPECT_THAT(report["results"]["6.17"]["settings"].get<std::string>(),
               HasSubstr("noise 0, 4; methods ssd"));
@@ -53,13 +40,10 @@ TEST(ExperimentCommand, WritesNumbersChartsAndAPage) {
 TEST(ExperimentCommand, MakesAllFigures) {
   const TemporaryFolder folder;
   const std::string out = folder / "all";
-  const ProcessResult result =
-      run_vantage({"book", "figure", "all", "-o", out, "--size", "40", "--iterations", "1,2",
-                   "--noise", "1", "--pictures", "png", "--quiet"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(run_vantage({"book", "figure", "all", "-o", out, "--size", "40", "--iterations", "1,2",
+                        "--noise", "1", "--pictures", "png", "--quiet"}));
   const auto files = files_below(out);
-  const ProcessResult list = run_vantage({"book", "figure", "--list"});
-  ASSERT_EQ(list.exit_code, 0);
+  const ProcessResult list = succeeds(run_vantage({"book", "figure", "--list"}));
   int figures = 0;
   for (std::size_t begin = 0; begin < list.out.size(); begin = list.out.find('\n', begin) + 1) {
     if (list.out[begin] != ' ') {
@@ -76,15 +60,13 @@ TEST(ExperimentCommand, MakesAllFigures) {
 
 TEST(ExperimentCommand, IsReproducible) {
   const TemporaryFolder folder;
-  const std::vector<std::string> arguments = {
-      "book",    "figure", "6.16",         "--size", "24",      "--pairs", "real-square",
-      "--noise", "0,1",    "--iterations", "1",      "--quiet", "-o"};
-  const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
+  const Words arguments =
+      words("book figure 6.16 --size 24 --pairs real-square --noise 0,1 --iterations 1 --quiet -o");
+  const auto run = [&](const std::string& out, const Words& more) {
     auto all = arguments;
     all.push_back(out);
     all.insert(all.end(), more.begin(), more.end());
-    const ProcessResult result = run_vantage(all);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const ProcessResult result = succeeds(run_vantage(all));
     EXPECT_THAT(result.err, IsEmpty());
     return read_file(out + "/figure-6.16.csv");
   };
@@ -96,12 +78,11 @@ TEST(ExperimentCommand, IsReproducible) {
 
 TEST(ExperimentCommand, EachRowIsAnotherComputation) {
   const TemporaryFolder folder;
-  const auto rows_of = [&folder](const std::string& figure, std::vector<std::string> more) {
+  const auto rows_of = [&folder](const std::string& figure, Words more) {
     const std::string out = folder / ("rows-" + figure);
     more.insert(more.begin(), {"book", "figure", figure, "-o", out, "--quiet", "--size", "24",
                                "--pairs", "rds-square"});
-    const ProcessResult result = run_vantage(more);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run_vantage(more));
     return read_file(out + "/figure-" + figure + ".csv");
   };
   // Methods that read no iterations or no window have one row.
@@ -136,11 +117,9 @@ TEST(ExperimentCommand, SaysOnlyWhatFiguresRead) {
               AllOf(HasSubstr("methods gradient"), Not(HasSubstr("iterations"))));
   EXPECT_THAT(line_after("The membrane model"), HasSubstr("iterations 5, 10"));
   const TemporaryFolder folder;
-  const ProcessResult result =
-      run_vantage({"book", "figure", "6.9", "6.11", "-o", folder / "o", "--iterations", "1",
-                   "--beta", "0.2", "--report", folder / "r.json", "--quiet"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto report = nlohmann::json::parse(read_file(folder / "r.json"));
+  succeeds(run_vantage({"book", "figure", "6.9", "6.11", "-o", folder / "o", "--iterations", "1",
+                        "--beta", "0.2", "--report", folder / "r.json", "--quiet"}));
+  const auto report = read_json(folder / "r.json");
   EXPECT_EQ(report["results"]["6.9"]["settings"], "iterations 1; beta 0.2");
   EXPECT_EQ(report["results"]["6.11"]["settings"], "");
 }
@@ -153,21 +132,18 @@ TEST_F(ExperimentPhotographs, TakeThePlaceOfGeneratedScenes) {
   // The names of Middlebury 2014, and of 2001 with a photograph from between the cameras.
   const std::string scene = folder_ / "scene";
   const std::string row = folder_ / "row";
-  std::filesystem::create_directory(scene);
-  std::filesystem::create_directory(row);
-  std::filesystem::copy(left_, scene + "/im0.png");
-  std::filesystem::copy(right_, scene + "/im1.png");
-  std::filesystem::copy(truth, scene + "/disp0.pfm");
-  std::filesystem::copy(left_, row + "/im2.png");
-  std::filesystem::copy(right_, row + "/im6.png");
-  std::filesystem::copy(left_, row + "/im4.png");
-  std::filesystem::copy(truth, row + "/disp2.pfm");
-  const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"book", "figure",  "3.9",           "5.8", "-o",
-                                          out,    "--quiet", "--disparities", "0:9"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+  fs::create_directory(scene);
+  fs::create_directory(row);
+  fs::copy(left_, scene + "/im0.png");
+  fs::copy(right_, scene + "/im1.png");
+  fs::copy(truth, scene + "/disp0.pfm");
+  fs::copy(left_, row + "/im2.png");
+  fs::copy(right_, row + "/im6.png");
+  fs::copy(left_, row + "/im4.png");
+  fs::copy(truth, row + "/disp2.pfm");
+  const auto run = [&](const std::string& out, const Words& more) {
+    succeeds(run_vantage(joined(
+        {"book", "figure", "3.9", "5.8", "-o", out, "--quiet", "--disparities", "0:9"}, more)));
     return read_file(out + "/figure-5.8.csv");
   };
   const std::string with_truth =
@@ -180,16 +156,15 @@ TEST_F(ExperimentPhotographs, TakeThePlaceOfGeneratedScenes) {
   EXPECT_THAT(read_file(folder_ / "c/figure-3.9.csv"), HasSubstr(",,,"));
   EXPECT_THAT(read_file(folder_ / "d/figure-3.9.csv"), Not(HasSubstr(",,,")));
   EXPECT_NE(read_file(folder_ / "c/figures.html").find("Middlebury 2014"), std::string::npos);
-  const ProcessResult unknown =
-      run_vantage({"book", "figure", "3.9", "-o", folder_ / "e", "--data", folder_.path()});
-  EXPECT_EQ(unknown.exit_code, 1);
-  EXPECT_THAT(unknown.err, HasSubstr("no scene of Middlebury: expected"));
+  expect_failure(
+      run_vantage({"book", "figure", "3.9", "-o", folder_ / "e", "--data", folder_.path()}), 1,
+      "no scene of Middlebury: expected");
 }
 
 TEST(InputExperimentCommand, BadInputIsOneLineAndExit2) {
   const TemporaryFolder folder;
   const std::string out = folder / "o";
-  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+  const std::vector<Refusal> refusals = {
       {{"-o", out}, "FIGURE is missing"},
       {{"9.1", "-o", out}, "figure '9.1' is unknown, expected all, a chapter or one of"},
       {{"6.16"}, "--output is missing"},
@@ -213,20 +188,13 @@ TEST(InputExperimentCommand, BadInputIsOneLineAndExit2) {
        "--seed has no effect with photographs"},
       {{"3.9", "-o", out, "--disparities", "0:9"}, "--disparities has no effect without"},
       {{"6.16", "-o", out, "--iterations", "-1"}, "iterations is -1"}};
-  for (const auto& [more, says] : misuses) {
-    std::vector<std::string> arguments = {"book", "figure"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 2) << says;
-    EXPECT_TRUE(is_one_line(result, "book figure"));
-    EXPECT_THAT(result.err, HasSubstr(says));
-  }
-  EXPECT_THAT(files_below(folder.path()), IsEmpty());
+  expect_refusals("book figure", folder.path(), refusals, [&](const Words& words) {
+    return run_vantage(joined({"book", "figure"}, words));
+  });
   write_file(folder / "file", "x");
   EXPECT_EQ(
       run_vantage({"book", "figure", "6.9", "-o", folder / "file", "--iterations", "1"}).exit_code,
       1);
 }
 
-}  // namespace command_book_figure_test
-}  // namespace vantage
+}  // namespace vantage::command_book_figure_test

@@ -1,38 +1,25 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <sstream>
-#include <utility>
 #include <variant>
 
 #include "engine/generation/layered_scene.h"
 #include "engine/image/transposed.h"
-#include "tests/apps/pair_fixture.h"
+#include "tests/apps/sampling.h"
 #include "tests/well_formed_xml.h"
 
-namespace vantage {
-namespace command_book_response_test {
-
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::command_book_response_test {
 
 class ResponseCommand : public PairTest {
  protected:
-  [[nodiscard]] ProcessResult response(const std::string& out,
-                                       const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"book", "response", left_, right_, "-o", out};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult response(const std::string& out, const Words& more = {}) const {
+    return run_vantage(joined({"book", "response", left_, right_, "-o", out}, more));
   }
 };
 
 TEST_F(ResponseCommand, PrintsTheDominantDisplacements) {
-  const ProcessResult result = response(folder_ / "r.csv");
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = succeeds(response(folder_ / "r.csv"));
   // The background of the random-dot square is at 2.
   EXPECT_THAT(result.out, HasSubstr("whole              2     0"));
   EXPECT_THAT(result.out, HasSubstr("bottom-right "));
@@ -65,10 +52,9 @@ TEST_F(ResponseCommand, PrintsTheDominantDisplacements) {
 }
 
 TEST_F(ResponseCommand, WritesArraysPlotsAndAReport) {
-  const ProcessResult result =
+  const ProcessResult result = succeeds(
       response(folder_ / "r.npy", {"--displacements-x=-3:9", "--displacements-y=-2:2", "--plot",
-                                   folder_ / "r.svg", "--report", folder_ / "r.json", "--quiet"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+                                   folder_ / "r.svg", "--report", folder_ / "r.json", "--quiet"}));
   EXPECT_THAT(result.err, IsEmpty());
   const std::string npy = read_file(folder_ / "r.npy");
   EXPECT_THAT(npy.substr(0, 128), HasSubstr("'descr': '<f8'"));
@@ -77,34 +63,29 @@ TEST_F(ResponseCommand, WritesArraysPlotsAndAReport) {
   const XmlOutline plot = read_xml(read_file(folder_ / "r.svg"));
   EXPECT_EQ(plot.error, "");
   EXPECT_EQ(plot.count("image"), 2 * 5);
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["settings"]["displacements-x"], "-3:9");
   EXPECT_EQ(report["results"]["dominant"]["whole"]["dx_px"], 2);
   EXPECT_EQ(report["results"]["dominant"]["whole"]["dy_px"], 0);
 }
 
 TEST_F(ResponseCommand, DifferencesAndEvidencePictures) {
-  const ProcessResult result =
-      response(folder_ / "r.npy",
-               {"--rms", folder_ / "d.csv", "--evidence-pictures", folder_ / "e.svg", "--plot",
-                folder_ / "p.svg", "--displacements-x=-3:8", "--displacements-y=-1:1", "--report",
-                folder_ / "r.json", "--gradient-components", "x"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(response(folder_ / "r.npy",
+                    {"--rms", folder_ / "d.csv", "--evidence-pictures", folder_ / "e.svg", "--plot",
+                     folder_ / "p.svg", "--displacements-x=-3:8", "--displacements-y=-1:1",
+                     "--report", folder_ / "r.json", "--gradient-components", "x"}));
   EXPECT_THAT(read_file(folder_ / "d.csv"), HasSubstr("dx_px,dy_px,rms_grey_levels\n-3,-1,"));
   EXPECT_THAT(read_file(folder_ / "e.svg"), HasSubstr("bottom-right: "));
   EXPECT_THAT(read_file(folder_ / "p.svg"), HasSubstr("negated RMS difference: largest at 2, 0"));
-  const auto smallest =
-      nlohmann::json::parse(read_file(folder_ / "r.json"))["results"]["smallest_rms"];
+  const auto smallest = read_json(folder_ / "r.json")["results"]["smallest_rms"];
   EXPECT_EQ(smallest["dx_px"], 2);
   EXPECT_EQ(smallest["dy_px"], 0);
 }
 
 TEST_F(ResponseCommand, CurvesForOneRange) {
-  ASSERT_EQ(response(folder_ / "r.csv", {"--plot", folder_ / "x.svg"}).exit_code, 0);
-  ASSERT_EQ(response(folder_ / "r.csv", {"--displacements-x=2:2", "--displacements-y=-4:4",
-                                         "--plot", folder_ / "y.png", "--norm", "octagon"})
-                .exit_code,
-            0);
+  succeeds(response(folder_ / "r.csv", {"--plot", folder_ / "x.svg"}));
+  succeeds(response(folder_ / "r.csv", {"--displacements-x=2:2", "--displacements-y=-4:4", "--plot",
+                                        folder_ / "y.png", "--norm", "octagon"}));
   const XmlOutline plot = read_xml(read_file(folder_ / "x.svg"));
   EXPECT_EQ(plot.error, "");
   EXPECT_EQ(plot.count("image"), 0);
@@ -116,7 +97,7 @@ using InputResponseCommand = ResponseCommand;
 
 TEST_F(InputResponseCommand, BadInputIsOneLine) {
   const std::string out = folder_ / "r.csv";
-  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+  const std::vector<Refusal> refusals = {
       {{"--displacements-x", "5:4"}, "displacements-x is 5:4"},
       {{"--displacements-x", "wide"}, "--displacements-x is 'wide', expected MIN:MAX"},
       {{"--displacements-y", "auto"}, "--displacements-y is 'auto'"},
@@ -125,15 +106,11 @@ TEST_F(InputResponseCommand, BadInputIsOneLine) {
       {{"--gradient", "prewitt"}, "--gradient is 'prewitt'"},
       {{"--plot", folder_ / "plot.txt"}, "--plot is"},
       {{"--plot", left_}, "which is also an input"}};
-  for (const auto& [arguments, says] : misuses) {
-    const ProcessResult result = response(out, arguments);
-    EXPECT_EQ(result.exit_code, 2) << says;
-    EXPECT_TRUE(is_one_line(result, "book response"));
-    EXPECT_THAT(result.err, HasSubstr(says));
-  }
+  expect_refusals("book response", folder_.path(), refusals,
+                  [&](const Words& words) { return response(out, words); });
   EXPECT_EQ(response(folder_ / "r.txt").exit_code, 2);
   EXPECT_EQ(run_vantage({"book", "response", left_, folder_ / "none.png", "-o", out}).exit_code, 1);
-  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_FALSE(fs::exists(out));
 }
 
 TEST_F(ResponseCommand, ConstantImagesHaveNoneAndStillWriteTheirData) {
@@ -141,9 +118,8 @@ TEST_F(ResponseCommand, ConstantImagesHaveNoneAndStillWriteTheirData) {
   grey.fill(77);
   write_photograph(folder_ / "grey.png", {std::move(grey)});
   const ProcessResult result =
-      run_vantage({"book", "response", folder_ / "grey.png", folder_ / "grey.png", "-o",
-                   folder_ / "r.csv", "--plot", folder_ / "r.svg"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+      succeeds(run_vantage({"book", "response", folder_ / "grey.png", folder_ / "grey.png", "-o",
+                            folder_ / "r.csv", "--plot", folder_ / "r.svg"}));
   EXPECT_THAT(result.out, HasSubstr("none"));
   EXPECT_EQ(read_xml(read_file(folder_ / "r.svg")).error, "");
 }
@@ -163,10 +139,9 @@ class AutomaticDisparities : public PairTest {
 
 TEST_F(AutomaticDisparities, MatchTellsTheRangeAndReportsIt) {
   const ProcessResult result =
-      run_vantage({"match", left_, right_, "-o", folder_ / "a.pfm", "--disparities", "auto",
-                   "--report", folder_ / "r.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+      succeeds(run_vantage({"match", left_, right_, "-o", folder_ / "a.pfm", "--disparities",
+                            "auto", "--report", folder_ / "r.json"}));
+  const auto report = read_json(folder_ / "r.json");
   const std::string range = report["settings"]["disparities"];
   EXPECT_THAT(result.err, HasSubstr("--disparities auto is " + range));
   EXPECT_TRUE(report["seconds"]["stages"].contains("range"));
@@ -177,25 +152,21 @@ TEST_F(AutomaticDisparities, MatchTellsTheRangeAndReportsIt) {
   EXPECT_GE(max, 6);
   EXPECT_LE(max - min, 20);
   // The same as giving that range.
-  ASSERT_EQ(run_vantage({"match", left_, right_, "-o", folder_ / "b.pfm", "--disparities=" + range})
-                .exit_code,
-            0);
+  succeeds(
+      run_vantage({"match", left_, right_, "-o", folder_ / "b.pfm", "--disparities=" + range}));
   EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
   EXPECT_LT(bad_share(read_disparity(folder_ / "a.pfm"), pair_.left_disparity, pair_.left_occluded),
             0.05);
 }
 
 TEST_F(AutomaticDisparities, SynthAndRunTakeItToo) {
-  ProcessResult result = run_vantage(
-      {"synth", left_, right_, "-o", folder_ / "v.png", "--view", "0.5", "--disparities=auto"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ProcessResult result = succeeds(run_vantage(
+      {"synth", left_, right_, "-o", folder_ / "v.png", "--view", "0.5", "--disparities=auto"}));
   EXPECT_THAT(result.err, HasSubstr("synth: --disparities auto is "));
-  result = run_vantage({"run", "--left", left_, "--right", right_, "-o", folder_ / "out",
-                        "--disparities", "auto", "--report", folder_ / "r.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  result = succeeds(run_vantage({"run", "--left", left_, "--right", right_, "-o", folder_ / "out",
+                                 "--disparities", "auto", "--report", folder_ / "r.json"}));
   EXPECT_THAT(result.err, HasSubstr("run: --disparities auto is "));
-  EXPECT_NE(nlohmann::json::parse(read_file(folder_ / "r.json"))["settings"]["disparities"],
-            "auto");
+  EXPECT_NE(read_json(folder_ / "r.json")["settings"]["disparities"], "auto");
 }
 
 TEST_F(AutomaticDisparities, ConstantImagesNeedARange) {
@@ -203,59 +174,53 @@ TEST_F(AutomaticDisparities, ConstantImagesNeedARange) {
   grey.fill(77);
   write_photograph(folder_ / "grey.png", {std::move(grey)});
   const std::string grey_file = folder_ / "grey.png";
-  for (const std::vector<std::string>& command :
-       {std::vector<std::string>{"match", grey_file, grey_file, "-o", folder_ / "o.pfm"},
+  for (const Words& command :
+       {Words{"match", grey_file, grey_file, "-o", folder_ / "o.pfm"},
         {"run", "--left", grey_file, "--right", grey_file, "-o", folder_ / "out"}}) {
-    auto arguments = command;
-    arguments.insert(arguments.end(), {"--disparities", "auto"});
-    const ProcessResult result = run_vantage(arguments);
+    const ProcessResult result = run_vantage(joined(command, {"--disparities", "auto"}));
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_TRUE(is_one_line(result, command.front()));
     EXPECT_THAT(result.err, HasSubstr("give --disparities MIN:MAX"));
   }
-  EXPECT_FALSE(std::filesystem::exists(std::string(folder_ / "o.pfm")));
+  EXPECT_FALSE(fs::exists(std::string(folder_ / "o.pfm")));
 }
 
 TEST_F(AutomaticDisparities, IsWhatCommandsDoUnlessARangeIsGiven) {
-  for (const std::vector<std::string>& command :
-       {std::vector<std::string>{"match", left_, right_, "-o", folder_ / "d.png"},
+  for (const Words& command :
+       {Words{"match", left_, right_, "-o", folder_ / "d.png"},
         {"synth", left_, right_, "--view", "0.5", "-o", folder_ / "d.png"},
         {"view", left_, right_, "-o", folder_ / "d.html"},
         {"run", "--left", left_, "--right", right_, "--format", "png", "-o", folder_ / "run"}}) {
-    const ProcessResult result = run_vantage(command);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const ProcessResult result = succeeds(run_vantage(command));
     EXPECT_THAT(result.err, HasSubstr(command.front() + ": --disparities auto is 0:"));
   }
   std::ofstream(folder_ / "places.csv") << "left.png,0,0\nright.png,1,0\n";
-  const ProcessResult built =
-      run_vantage({"scene", "build", "--positions", folder_ / "places.csv", "-o", folder_ / "scene",
-                   "--report", folder_ / "scene.json"});
-  ASSERT_EQ(built.exit_code, 0) << built.err;
-  const auto report = nlohmann::json::parse(read_file(folder_ / "scene.json"));
+  succeeds(run_vantage({"scene", "build", "--positions", folder_ / "places.csv", "-o",
+                        folder_ / "scene", "--report", folder_ / "scene.json"}));
+  const auto report = read_json(folder_ / "scene.json");
   EXPECT_THAT(report["results"]["edges_matched"][0]["disparities"].get<std::string>(),
-              testing::StartsWith("0:"));
+              StartsWith("0:"));
 }
 
 TEST_F(AutomaticDisparities, ExchangedImagesAreToldAndNoPngIsBegun) {
-  const ProcessResult map = run_vantage(
-      {"match", right_, left_, "-o", folder_ / "d.pfm", "--report", folder_ / "r.json"});
-  EXPECT_EQ(map.exit_code, 0) << map.err;
+  const ProcessResult map = succeeds(run_vantage(
+      {"match", right_, left_, "-o", folder_ / "d.pfm", "--report", folder_ / "r.json"}));
   EXPECT_THAT(map.err, HasSubstr("mostly negative: left and right look exchanged"));
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  const auto report = read_json(folder_ / "r.json");
   if (report["results"].contains("rectification")) {  // points enough to tell
     EXPECT_TRUE(report["results"]["rectification"]["looks_exchanged"].get<bool>());
   }
-  for (const std::vector<std::string>& command :
-       {std::vector<std::string>{"match", right_, left_, "-o", folder_ / "d.png"},
+  for (const Words& command :
+       {Words{"match", right_, left_, "-o", folder_ / "d.png"},
         {"run", "--left", right_, "--right", left_, "--format", "png", "-o", folder_ / "run"}}) {
     const ProcessResult png = run_vantage(command);
     EXPECT_EQ(png.exit_code, 2);
-    EXPECT_THAT(png.err, testing::AllOf(HasSubstr("16-bit PNG, which holds disparities from 0"),
-                                        HasSubstr("expected .pfm, .tiff, .exr or .npy"),
-                                        HasSubstr("look exchanged")));
+    EXPECT_THAT(png.err, AllOf(HasSubstr("16-bit PNG, which holds disparities from 0"),
+                               HasSubstr("expected .pfm, .tiff, .exr or .npy"),
+                               HasSubstr("look exchanged")));
   }
-  EXPECT_FALSE(std::filesystem::exists(std::string(folder_ / "d.png")));
-  EXPECT_FALSE(std::filesystem::exists(std::string(folder_ / "run")));
+  EXPECT_FALSE(fs::exists(std::string(folder_ / "d.png")));
+  EXPECT_FALSE(fs::exists(std::string(folder_ / "run")));
 }
 
 TEST_F(AutomaticDisparities, ARunFindsItInAllOfTheInput) {
@@ -296,23 +261,20 @@ TEST_F(AutomaticDisparities, AResumedRunTakesTheRangeThatItBeganWith) {
   write_photograph(left, pair_.left);
   write_photograph(right, pair_.right);
   std::ofstream(folder_ / "pairs.csv") << left << ',' << right << '\n';
-  const std::vector<std::string> command = {"run", "--pairs", folder_ / "pairs.csv", "-o",
-                                            folder_ / "run"};
-  const ProcessResult first = run_vantage(command);
-  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const Words command = {"run", "--pairs", folder_ / "pairs.csv", "-o", folder_ / "run"};
+  succeeds(run_vantage(command));
   // Nothing is read to find it: these images, which look unchanged, have none.
   Image<std::uint8_t> grey(160, 120);
   grey.fill(99);
   const Photograph flat{std::move(grey)};
   for (const std::string& file : {left, right}) {
-    const auto time = std::filesystem::last_write_time(file);
+    const auto time = fs::last_write_time(file);
     write_photograph(file, flat);
-    std::filesystem::last_write_time(file, time);
+    fs::last_write_time(file, time);
   }
-  std::vector<std::string> again = command;
+  Words again = command;
   again.push_back("--resume");
-  const ProcessResult resumed = run_vantage(again);
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  const ProcessResult resumed = succeeds(run_vantage(again));
   EXPECT_THAT(resumed.err, HasSubstr("run: --disparities auto is 0:"));
 }
 
@@ -326,31 +288,26 @@ TEST_F(AutomaticDisparities, ACutRangeIsToldOf) {
   options.samples_per_side = 1;
   const LayeredScene scene(options, execution);
   for (const char* folder : {"l", "r"}) {
-    std::filesystem::create_directory(folder_ / folder);
+    fs::create_directory(folder_ / folder);
   }
   for (const char* name : {"0.png", "1.png"}) {
     write_photograph(folder_ / ("l/" + std::string(name)), scene.render({0, 0}, 0).image);
     write_photograph(folder_ / ("r/" + std::string(name)), scene.render({1, 0}, 0).image);
   }
-  const std::vector<std::string> match = {
-      "match",           folder_ / "l/0.png", folder_ / "r/0.png", "-o",
-      folder_ / "m.pfm", "--report",          folder_ / "r.json"};
-  const std::vector<std::string> run = {
-      "run",      "--left",           folder_ / "l", "--right",       folder_ / "r",
-      "--report", folder_ / "r.json", "-o",          folder_ / "run", "--overwrite"};
-  const std::vector<std::string> synth = {
-      "synth", folder_ / "l/0.png", folder_ / "r/0.png", "--view",          "0.5",
-      "-o",    folder_ / "v.png",   "--report",          folder_ / "r.json"};
-  for (std::vector<std::string> command : {match, run, synth}) {
-    const ProcessResult whole = run_vantage(command);
-    EXPECT_EQ(whole.exit_code, 0) << whole.err;
-    EXPECT_THAT(whole.err, testing::Not(HasSubstr("left out")));
+  const Words match = {"match",           folder_ / "l/0.png", folder_ / "r/0.png", "-o",
+                       folder_ / "m.pfm", "--report",          folder_ / "r.json"};
+  const Words run = {"run",      "--left",           folder_ / "l", "--right",       folder_ / "r",
+                     "--report", folder_ / "r.json", "-o",          folder_ / "run", "--overwrite"};
+  const Words synth = {"synth", folder_ / "l/0.png", folder_ / "r/0.png", "--view",          "0.5",
+                       "-o",    folder_ / "v.png",   "--report",          folder_ / "r.json"};
+  for (Words command : {match, run, synth}) {
+    const ProcessResult whole = succeeds(run_vantage(command));
+    EXPECT_THAT(whole.err, Not(HasSubstr("left out")));
     command.insert(command.end(), {"--disparities", "0:10"});
-    const ProcessResult cut = run_vantage(command);
-    EXPECT_EQ(cut.exit_code, 0) << cut.err;
+    const ProcessResult cut = succeeds(run_vantage(command));
     EXPECT_THAT(cut.err, HasSubstr("disparities above 10 seem to be left out"));
     EXPECT_EQ(cut.err.find("left out"), cut.err.rfind("left out")) << cut.err;
-    const auto results = nlohmann::json::parse(read_file(folder_ / "r.json"))["results"];
+    const auto results = read_json(folder_ / "r.json")["results"];
     EXPECT_TRUE(results["cut_range"]["above"].get<bool>());
     EXPECT_FALSE(results["cut_range"]["below"].get<bool>());
     command.push_back("--quiet");
@@ -399,21 +356,19 @@ TEST_F(AutomaticDisparities, OfTwoDimensions) {
   write_photograph(folder_ / "b.png", window(kAcross, kDown));
   write_photograph(folder_ / "at.png", transposed(window(0, 0)));
   write_photograph(folder_ / "bt.png", transposed(window(kAcross, kDown)));
-  const auto match = [&](const char* first, const char* second, std::vector<std::string> more) {
+  const auto match = [&](const char* first, const char* second, Words more) {
     more.insert(more.begin(), {"match", folder_ / first, folder_ / second, "-o", folder_ / "o.flo",
                                "--disparities-y", "auto", "--method", "gradient"});
-    const ProcessResult result = run_vantage(more);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.err, testing::AllOf(HasSubstr("match: --disparities-y auto is 2:4\n"),
-                                           HasSubstr("match: --disparities auto is")));
+    const ProcessResult result = succeeds(run_vantage(more));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("match: --disparities-y auto is 2:4\n"),
+                                  HasSubstr("match: --disparities auto is")));
   };
   match("a.png", "b.png", {"--report", folder_ / "r.json"});
   EXPECT_GT(share_at(folder_ / "o.flo", kWidth, kHeight, -kAcross, -kDown), 0.9);
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["settings"]["disparities-y"], "2:4");
   match("at.png", "bt.png", {"--vertical"});
   EXPECT_GT(share_at(folder_ / "o.flo", kHeight, kWidth, -kDown, -kAcross), 0.9);
 }
 
-}  // namespace command_book_response_test
-}  // namespace vantage
+}  // namespace vantage::command_book_response_test

@@ -1,15 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "tests/apps/pair_fixture.h"
 
-namespace vantage {
-namespace command_eval_test {
-
-using testing::HasSubstr;
+namespace vantage::command_eval_test {
 
 class EvalCommand : public testing::Test {
  protected:
@@ -25,14 +19,13 @@ class EvalCommand : public testing::Test {
     write_disparity(map_, map.view());
   }
 
-  [[nodiscard]] nlohmann::json results(std::vector<std::string> arguments) const {
+  [[nodiscard]] nlohmann::json results(Words arguments) const {
     arguments.insert(arguments.begin(), "eval");
     arguments.insert(arguments.end(), {"--report", folder_ / "r.json"});
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const ProcessResult result = succeeds(run_vantage(arguments));
     EXPECT_EQ(result.err, "");
     table_ = result.out;
-    return nlohmann::json::parse(read_file(folder_ / "r.json"))["results"];
+    return read_json(folder_ / "r.json")["results"];
   }
 
   TemporaryFolder folder_;
@@ -97,23 +90,17 @@ TEST_F(InputEvalCommand, BadInputIsOneLine) {
   DisparityMap small(3, 2);
   small.fill(1);
   write_disparity(folder_ / "small.pfm", small.view());
-  const std::vector<std::pair<std::vector<std::string>, int>> cases = {
-      {{map_}, 2},
-      {{map_, folder_ / "none.pfm"}, 1},
-      {{map_, folder_ / "small.pfm"}, 1},
-      {{map_, truth_, "--ignore-border", "-1"}, 2},
-      {{map_, truth_, "--ignore-border", "9"}, 1},
-      {{map_, truth_, "--scale", "0"}, 2},
-      {{"--views", map_, truth_, "--scale", "4"}, 2},
-      {{map_, truth_, "--mask", map_}, 1}};
+  const std::vector<std::pair<Words, int>> cases = {{{map_}, 2},
+                                                    {{map_, folder_ / "none.pfm"}, 1},
+                                                    {{map_, folder_ / "small.pfm"}, 1},
+                                                    {{map_, truth_, "--ignore-border", "-1"}, 2},
+                                                    {{map_, truth_, "--ignore-border", "9"}, 1},
+                                                    {{map_, truth_, "--scale", "0"}, 2},
+                                                    {{"--views", map_, truth_, "--scale", "4"}, 2},
+                                                    {{map_, truth_, "--mask", map_}, 1}};
   for (const auto& [arguments, exit_code] : cases) {
-    std::vector<std::string> all = {"eval"};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const ProcessResult result = run_vantage(all);
-    EXPECT_EQ(result.exit_code, exit_code) << arguments.back();
-    EXPECT_TRUE(is_one_line(result, "eval"));
+    expect_one_line(run_vantage(joined({"eval"}, arguments)), exit_code, "eval");
   }
 }
 
-}  // namespace command_eval_test
-}  // namespace vantage
+}  // namespace vantage::command_eval_test

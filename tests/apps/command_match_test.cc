@@ -1,25 +1,14 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
 
 #include "engine/matching/stereo_matcher.h"
-#include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace command_match_test {
-
-using testing::ContainsRegex;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::command_match_test {
 
 using MatchCommand = PairTest;
 
 TEST_F(MatchCommand, FindsTheTruth) {
-  const ProcessResult result = match(folder_ / "map.pfm", {});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = succeeds(match(folder_ / "map.pfm", {}));
   EXPECT_THAT(result.out, IsEmpty());
   EXPECT_THAT(result.err, HasSubstr("71x53"));
   EXPECT_LT(
@@ -39,10 +28,9 @@ TEST_F(MatchCommand, NamesItsFilesAndTheColoursOfThePreview) {
 
 TEST_F(MatchCommand, WritesEverythingAskedFor) {
   const ProcessResult result =
-      match(folder_ / "l.pfm",
-            {"--output-right", folder_ / "r.npy", "--unmatched", folder_ / "mask.png", "--preview",
-             folder_ / "view.jpg", "--report", folder_ / "report.json", "--quiet"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+      succeeds(match(folder_ / "l.pfm", {"--output-right", folder_ / "r.npy", "--unmatched",
+                                         folder_ / "mask.png", "--preview", folder_ / "view.jpg",
+                                         "--report", folder_ / "report.json", "--quiet"}));
   EXPECT_THAT(result.err, IsEmpty());
   EXPECT_THAT(files_below(folder_.path()), ElementsAre("l.pfm", "left.png", "mask.png", "r.npy",
                                                        "report.json", "right.png", "view.jpg"));
@@ -57,11 +45,10 @@ TEST_F(MatchCommand, WritesEverythingAskedFor) {
 }
 
 TEST_F(MatchCommand, WritesAndReportsDepthResolution) {
-  const ProcessResult result =
+  succeeds(
       match(folder_ / "map.pfm", {"--method", "ssd", "--subpixel", "none", "--focal-length", "500",
                                   "--baseline", "0.1", "--depth-resolution", folder_ / "z.npy",
-                                  "--report", folder_ / "report.json", "--fill", "canonical"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+                                  "--report", folder_ / "report.json", "--fill", "canonical"}));
   const DisparityMap map = read_disparity(folder_ / "map.pfm");
   const DisparityMap resolution = read_disparity(folder_ / "z.npy");
   float nearest = 0;
@@ -76,7 +63,7 @@ TEST_F(MatchCommand, WritesAndReportsDepthResolution) {
       }
     }
   }
-  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  const auto report = read_json(folder_ / "report.json");
   const auto& values = report["results"]["depth_resolution"];
   EXPECT_EQ(values["disparity_resolution_px"], 1);
   EXPECT_FLOAT_EQ(values["nearest"]["depth"].get<float>(), 50 / nearest);
@@ -84,10 +71,8 @@ TEST_F(MatchCommand, WritesAndReportsDepthResolution) {
 }
 
 TEST_F(MatchCommand, EqualsTheLibrary) {
-  ASSERT_EQ(
-      match(folder_ / "map.pfm", {"--method", "ssd", "--window=3", "--raw", "--border", "valid"})
-          .exit_code,
-      0);
+  succeeds(
+      match(folder_ / "map.pfm", {"--method", "ssd", "--window=3", "--raw", "--border", "valid"}));
   MatchOptions options;
   options.method = MatchMethod::kSsd;
   options.disparities = {0, 9};
@@ -110,21 +95,17 @@ TEST_F(MatchCommand, EqualsTheLibrary) {
 }
 
 TEST_F(MatchCommand, ReferenceRightWritesTheRightMap) {
-  ASSERT_EQ(match(folder_ / "a.pfm", {"--output-right", folder_ / "b.pfm"}).exit_code, 0);
-  ASSERT_EQ(match(folder_ / "c.pfm", {"--reference", "right"}).exit_code, 0);
+  succeeds(match(folder_ / "a.pfm", {"--output-right", folder_ / "b.pfm"}));
+  succeeds(match(folder_ / "c.pfm", {"--reference", "right"}));
   EXPECT_EQ(read_file(folder_ / "b.pfm"), read_file(folder_ / "c.pfm"));
   EXPECT_NE(read_file(folder_ / "a.pfm"), read_file(folder_ / "c.pfm"));
 }
 
 TEST_F(MatchCommand, SignedRangesInBothSpellings) {
   // With the images swapped every disparity changes its sign.
-  const std::vector<std::string> swapped = {"match", right_, left_, "-o"};
-  auto joined = swapped;
-  joined.insert(joined.end(), {folder_ / "joined.pfm", "--disparities=-9:0"});
-  auto apart = swapped;
-  apart.insert(apart.end(), {folder_ / "apart.pfm", "--disparities", "-9:0"});
-  ASSERT_EQ(run_vantage(joined).exit_code, 0);
-  ASSERT_EQ(run_vantage(apart).exit_code, 0);
+  const Words swapped = {"match", right_, left_, "-o"};
+  succeeds(run_vantage(joined(swapped, {folder_ / "joined.pfm", "--disparities=-9:0"})));
+  succeeds(run_vantage(joined(swapped, {folder_ / "apart.pfm", "--disparities", "-9:0"})));
   EXPECT_EQ(read_file(folder_ / "joined.pfm"), read_file(folder_ / "apart.pfm"));
   const DisparityMap map = read_disparity(folder_ / "apart.pfm");
   DisparityMap negated = pair_.right_disparity.copy();
@@ -137,12 +118,10 @@ TEST_F(MatchCommand, SignedRangesInBothSpellings) {
 }
 
 TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
-  ASSERT_EQ(match(folder_ / "map.pfm",
-                  {"--method", "ssd", "--report", folder_ / "r.json", "--threads", "2"})
-                .exit_code,
-            0);
+  succeeds(match(folder_ / "map.pfm",
+                 {"--method", "ssd", "--report", folder_ / "r.json", "--threads", "2"}));
   const auto report = nlohmann::ordered_json::parse(read_file(folder_ / "r.json"));
-  std::vector<std::string> keys;
+  Words keys;
   for (const auto& [key, value] : report.items()) {
     keys.push_back(key);
   }
@@ -169,8 +148,8 @@ TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
 }
 
 TEST_F(MatchCommand, ResultsDoNotDependOnExecution) {
-  const auto map_of = [&](const std::string& method, const std::vector<std::string>& way) {
-    std::vector<std::string> options = {"--method", method};
+  const auto map_of = [&](const std::string& method, const Words& way) {
+    Words options = {"--method", method};
     if (method == "auto") {
       options.push_back("--levels=3");  // of the preset that is the default
     }
@@ -178,9 +157,9 @@ TEST_F(MatchCommand, ResultsDoNotDependOnExecution) {
     return options;
   };
   for (const std::string method : {"auto", "ssd"}) {
-    ASSERT_EQ(match(folder_ / "a.pfm", map_of(method, {"--executor", "serial"})).exit_code, 0);
+    succeeds(match(folder_ / "a.pfm", map_of(method, {"--executor", "serial"})));
     const std::string expected = read_file(folder_ / "a.pfm");
-    const std::vector<std::vector<std::string>> ways = {
+    const std::vector<Words> ways = {
         {"--executor", "tbb", "--threads", "3", "--strip-width", "7", "--band-height", "5"},
         {"--executor", "openmp", "--threads", "2"},
         {"--isa", "SSE4"}};
@@ -199,22 +178,16 @@ TEST_F(MatchCommand, ResultsDoNotDependOnExecution) {
 TEST_F(MatchCommand, IsaIsTheOneThatRan) {
   const auto info = nlohmann::json::parse(run_vantage({"info", "--json"}).out);
   for (const std::string name : info["isa_available"]) {
-    ASSERT_EQ(match(folder_ / "a.pfm", {"--isa", name, "--report", folder_ / "r.json"}).exit_code,
-              0);
-    EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "r.json"))["isa"], name);
+    succeeds(match(folder_ / "a.pfm", {"--isa", name, "--report", folder_ / "r.json"}));
+    EXPECT_EQ(read_json(folder_ / "r.json")["isa"], name);
   }
 }
-
-struct Misuse {
-  std::vector<std::string> arguments;  ///< after match LEFT RIGHT
-  std::string says;
-};
 
 using InputMatchCommand = MatchCommand;
 
 TEST_F(InputMatchCommand, WrongUsageIsOneLineAndExit2) {
   const std::string out = folder_ / "out.pfm";
-  const std::vector<Misuse> misuses = {
+  const std::vector<Refusal> refusals = {
       {{}, "--output"},
       {{"-o", out, "--window", "8"}, "window is 8"},
       {{"-o", out, "--window", "wide"}, "--window is 'wide', expected a whole number"},
@@ -235,22 +208,13 @@ TEST_F(InputMatchCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", out, "--output-right", out}, "the same file"},
       {{"-o", out, "--reference", "right", "--output-right", folder_ / "r.pfm"}, "--output-right"},
       {{"-o", out, "--window"}, "--window"}};
-  const auto before = files_below(folder_.path());
-  SCOPED_TRACE(test::sample_name());
-  for (const Misuse& misuse :
-       sampled_command_lines(misuses, [](const Misuse& one) { return one.arguments; })) {
-    std::vector<std::string> arguments = {"match", left_, right_};
-    arguments.insert(arguments.end(), misuse.arguments.begin(), misuse.arguments.end());
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 2) << misuse.says;
-    EXPECT_TRUE(is_one_line(result, "match"));
-    EXPECT_THAT(result.err, HasSubstr(misuse.says));
-  }
-  EXPECT_EQ(files_below(folder_.path()), before);
+  expect_refusals("match", folder_.path(), refusals, [&](const Words& words) {
+    return run_vantage(joined({"match", left_, right_}, words));
+  });
 }
 
 TEST(InputCommandLine, WordsOfOtherProgramsAreAnsweredWithWhatThereIs) {
-  const auto answer = [](const std::vector<std::string>& arguments) {
+  const auto answer = [](const Words& arguments) {
     const ProcessResult result = run_vantage(arguments);
     EXPECT_EQ(result.exit_code, 2);
     return result.err;
@@ -266,9 +230,7 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   ProcessResult result = run_vantage({"mach"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_EQ(result.err, "vantage: unknown command 'mach', the nearest known one is 'match'\n");
-  result = run_vantage({"scene"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("'vantage scene build' or 'vantage scene view'"));
+  expect_failure(run_vantage({"scene"}), 2, "'vantage scene build' or 'vantage scene view'");
   // Names of before say what they are now.
   EXPECT_THAT(run_vantage({"experiment", "6.16"}).err, HasSubstr("now 'vantage book figure'"));
   EXPECT_THAT(run_vantage({"response", "a.png"}).err, HasSubstr("now 'vantage book response'"));
@@ -282,23 +244,19 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   EXPECT_EQ(run_vantage({"help", "scene", "view"}).out,
             run_vantage({"scene", "view", "--help"}).out);
   EXPECT_EQ(run_vantage({}).exit_code, 2);
-  result = run_vantage({"--help"});
-  EXPECT_EQ(result.exit_code, 0);
+  result = succeeds(run_vantage({"--help"}));
   // What pairs and films need stands first, the book last.
   EXPECT_THAT(result.out, ContainsRegex("Stereo pairs\n  match.*\nSequences and films\n  run.*\n"
                                         "Scharstein's book\n  book figure [^:]*\n\n'vantage help"));
-  result = run_vantage({"match", "--help"});
-  EXPECT_EQ(result.exit_code, 0);
+  result = succeeds(run_vantage({"match", "--help"}));
   EXPECT_THAT(result.out, HasSubstr("--disparities MIN:MAX"));
   EXPECT_EQ(result.out.find("--trace FILE"), std::string::npos);
   EXPECT_THAT(run_vantage({"help", "match", "--help-all"}).out, HasSubstr("--trace FILE"));
   EXPECT_EQ(run_vantage({"--version"}).out.rfind("vantage ", 0), 0U);
   EXPECT_THAT(run_vantage({"--version", "--verbose"}).out,
               AllOf(HasSubstr("FFmpeg"), HasSubstr("processor"), HasSubstr("instruction sets")));
-  result = run_vantage({"--version", "--all"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("'--all' after --version, expected nothing or --verbose"));
+  expect_failure(run_vantage({"--version", "--all"}), 2,
+                 "'--all' after --version, expected nothing or --verbose");
 }
 
-}  // namespace command_match_test
-}  // namespace vantage
+}  // namespace vantage::command_match_test

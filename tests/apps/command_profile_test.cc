@@ -1,30 +1,19 @@
 // vantage profile: what it keeps of a pair's and a sequence's runs, and that it leaves nothing
 // else.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <thread>
 
 #include "tests/apps/run_fixture.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace command_profile_test {
+namespace vantage::command_profile_test {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-using Arguments = std::vector<std::string>;
 
-std::vector<std::string> keys_of(const json& object) {
-  std::vector<std::string> keys;
+Words keys_of(const json& object) {
+  Words keys;
   for (const auto& [key, value] : object.items()) {
     keys.push_back(key);
   }
@@ -35,11 +24,11 @@ std::vector<std::string> keys_of(const json& object) {
 class ProfileTest : public PairTest {
  protected:
   /// `profile --runs 1 --json … MORE`, and the command behind it.
-  [[nodiscard]] ProcessResult profile(const Arguments& more, const Arguments& command) const {
-    const Arguments own = {"profile", "--runs", "1", "--json", json_};
+  [[nodiscard]] ProcessResult profile(const Words& more, const Words& command) const {
+    const Words own = {"profile", "--runs", "1", "--json", json_};
     return run_vantage(joined(joined(own, more), command));
   }
-  [[nodiscard]] Arguments match_command(const Arguments& more = {}) const {
+  [[nodiscard]] Words match_command(const Words& more = {}) const {
     return joined({"match", left_, right_, "-o", out_ / "map.pfm", "--disparities=0:9"}, more);
   }
 
@@ -52,19 +41,18 @@ using SlowProfileTest = ProfileTest;
 TEST_F(SlowProfileTest, KeepsWhereTheTimeOfAPairGoes) {
   const std::string page = folder_ / "profile.html";
   const ProcessResult result =
-      profile({"--threads", "2,1", "--html", page},
-              match_command({"--method", "ssd", "--unmatched", out_ / "m.png"}));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+      succeeds(profile({"--threads", "2,1", "--html", page},
+                       match_command({"--method", "ssd", "--unmatched", out_ / "m.png"})));
   EXPECT_LT(result.out.find("What you can do about the time\n"),
             result.out.find("What holds it back\n"));
   for (const char* text : {"Threads", "speed-up", "column SSD", "Work and waiting",
                            "What the machine", "level 2", "Memory", "idle"}) {
     EXPECT_THAT(result.out, HasSubstr(text));
   }
-  const json kept = read_report(json_);
+  const json kept = read_json(json_);
   EXPECT_EQ(kept.at("profile_schema"), 1);
   EXPECT_THAT(kept.at("command"), HasSubstr("vantage match " + left_));
-  EXPECT_THAT(kept.at("date"), testing::MatchesRegex(".*-..-..T..:..:..Z"));
+  EXPECT_THAT(kept.at("date"), MatchesRegex(".*-..-..T..:..:..Z"));
   EXPECT_GT(kept.at("peak_memory_bytes"), 1'000'000);
   std::set<std::string> owners;
   for (const json& owner : kept.at("memory")) {
@@ -89,10 +77,9 @@ TEST_F(SlowProfileTest, KeepsWhereTheTimeOfAPairGoes) {
         count.at("parts"), [](const json& part) { return part.at("name") == "match left"; }));
     // Stages count what they make, whatever the number of threads.
     const json& stage = count.at("stages")[0];
-    EXPECT_EQ(keys_of(stage),
-              (Arguments{"bytes", "cells", "cells_per_s", "columns", "gb_per_s", "gflops",
-                         "halo_share", "name", "ns_per_cell", "operations", "own_columns",
-                         "roofline", "seconds", "work_share"}));
+    EXPECT_EQ(keys_of(stage), (Words{"bytes", "cells", "cells_per_s", "columns", "gb_per_s",
+                                     "gflops", "halo_share", "name", "ns_per_cell", "operations",
+                                     "own_columns", "roofline", "seconds", "work_share"}));
     EXPECT_GE(stage.at("columns"), stage.at("own_columns"));
     double pool_s = 0;
     for (const json& worker : count.at("workers")) {
@@ -113,8 +100,7 @@ TEST_F(SlowProfileTest, KeepsWhereTheTimeOfAPairGoes) {
 
 TEST_F(SlowProfileTest, LeavesResultsThatAreThere) {
   write_file(out_ / "map.pfm", "mine");
-  const ProcessResult result = profile({"--threads", "1"}, match_command());
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(profile({"--threads", "1"}, match_command()));
   EXPECT_EQ(read_file(out_ / "map.pfm"), "mine");
   EXPECT_EQ(out_.entries(), 1U);
 }
@@ -123,20 +109,14 @@ using InputProfileCommand = ProfileTest;
 
 TEST_F(InputProfileCommand, PassesOnWhatAFailingRunSays) {
   write_file(left_, "no image");
-  const ProcessResult result = profile({"--quiet", "--threads", "1"}, match_command());
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "match")) << result.err;
-  EXPECT_THAT(result.err, HasSubstr(left_));
+  expect_one_line(profile({"--quiet", "--threads", "1"}, match_command()), 1, "match", left_);
   EXPECT_EQ(out_.entries(), 0U);
   EXPECT_FALSE(fs::exists(json_));
 }
 
 TEST_F(InputProfileCommand, RefusesWhatItCannotProfile) {
-  const auto refused = [&](const Arguments& own, const Arguments& command, const char* text) {
-    const ProcessResult result = profile(own, command);
-    EXPECT_EQ(result.exit_code, 2) << result.err;
-    EXPECT_TRUE(is_one_line(result, "profile"));
-    EXPECT_THAT(result.err, HasSubstr(text));
+  const auto refused = [&](const Words& own, const Words& command, const char* text) {
+    expect_one_line(profile(own, command), 2, "profile", text);
     EXPECT_EQ(out_.entries(), 0U);
   };
   refused({}, {"synth", left_, right_}, "'synth' cannot be profiled, expected match or run");
@@ -153,27 +133,24 @@ TEST_F(InputProfileCommand, RefusesWhatItCannotProfile) {
 }
 
 TEST_F(SlowProfileTest, EndsWithTheBudgetButMakesARound) {
-  const ProcessResult result = run_vantage(
+  const ProcessResult result = succeeds(run_vantage(
       joined({"profile", "--runs", "50", "--budget", "0.001", "--threads", "1", "--json", json_},
-             match_command()));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+             match_command())));
   EXPECT_THAT(result.err, HasSubstr("the budget ended it after 1 of 50 rounds"));
-  EXPECT_EQ(read_report(json_).at("thread_counts")[0].at("runs"), 1);
+  EXPECT_EQ(read_json(json_).at("thread_counts")[0].at("runs"), 1);
 }
 
 TEST_F(SlowProfileTest, ComparesWithAnotherProgram) {
   const std::string other = folder_ / "other-vantage";
   fs::copy_file(test_paths::vantage_binary(), other);
-  const ProcessResult result = profile({"--threads", "1", "--quiet", "--against", other},
-                                       match_command({"--method", "ssd"}));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = succeeds(profile({"--threads", "1", "--quiet", "--against", other},
+                                                match_command({"--method", "ssd"})));
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("A  " + other), HasSubstr("stage column SSD"), HasSubstr("too few")));
-  EXPECT_EQ(read_report(json_).at("thread_counts")[0].at("runs"), 1);
-  const ProcessResult missing =
-      profile({"--threads", "1", "--quiet", "--against", folder_ / "none"}, match_command());
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.err, HasSubstr("none cannot be started"));
+  EXPECT_EQ(read_json(json_).at("thread_counts")[0].at("runs"), 1);
+  expect_failure(
+      profile({"--threads", "1", "--quiet", "--against", folder_ / "none"}, match_command()), 1,
+      "none cannot be started");
   EXPECT_EQ(out_.entries(), 0U);
 }
 
@@ -194,12 +171,10 @@ TEST_F(SlowProfileTest, EndsCleanlyWhenInterrupted) {
 }
 
 TEST_F(ProfileTest, AnswersHelpOfBoth) {
-  const ProcessResult own = run_vantage({"profile", "--help"});
-  EXPECT_EQ(own.exit_code, 0);
+  const ProcessResult own = succeeds(run_vantage({"profile", "--help"}));
   EXPECT_THAT(own.out,
               AllOf(HasSubstr("--compare"), HasSubstr("--budget"), HasSubstr("match|run")));
-  const ProcessResult of_match = run_vantage({"profile", "match", "--help"});
-  EXPECT_EQ(of_match.exit_code, 0);
+  const ProcessResult of_match = succeeds(run_vantage({"profile", "match", "--help"}));
   EXPECT_THAT(of_match.out, HasSubstr("--disparities"));
 }
 
@@ -207,9 +182,8 @@ TEST_F(ProfileTest, AnswersHelpOfBoth) {
 class ComparedProfiles : public ProfileTest {
  protected:
   ComparedProfiles() {
-    const ProcessResult result = profile({"--threads", "1", "--quiet"}, match_command());
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    first_ = read_report(json_);
+    succeeds(profile({"--threads", "1", "--quiet"}, match_command()));
+    first_ = read_json(json_);
     json& count = first_["thread_counts"][0];
     count["runs"] = 5;
     count["wall_s"] = {{"median", 2.0}, {"least", 1.9}, {"most", 2.1}};
@@ -229,8 +203,7 @@ class ComparedProfiles : public ProfileTest {
 using InputComparedProfiles = ComparedProfiles;
 
 TEST_F(InputComparedProfiles, HaveAVerdictOnlyWhereRangesAreApart) {
-  ProcessResult result = compare();
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ProcessResult result = succeeds(compare());
   EXPECT_THAT(result.out, AllOf(HasSubstr("no difference seen"), Not(HasSubstr("faster")),
                                 Not(HasSubstr("slower")), Not(HasSubstr("warning"))));
   second_["thread_counts"][0]["wall_s"] = {{"median", 1.0}, {"least", 0.9}, {"most", 1.1}};
@@ -243,8 +216,7 @@ TEST_F(InputComparedProfiles, HaveAVerdictOnlyWhereRangesAreApart) {
 TEST_F(InputComparedProfiles, MustBeProfiles) {
   const auto refused = [&](const char* text) {
     const ProcessResult result = compare();
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_TRUE(is_one_line(result, "profile"));
+    expect_one_line(result, 1, "profile");
     EXPECT_THAT(result.err, AllOf(HasSubstr(folder_ / "b.json"), HasSubstr(text)));
   };
   second_["thread_counts"][0]["wall_s"].erase("median");
@@ -257,21 +229,17 @@ TEST_F(InputComparedProfiles, MustBeProfiles) {
   refused("profile_schema is 2, expected 1: another version of vantage wrote it, profile again");
   second_ = json::array();
   refused("is no profile");
-  const ProcessResult one = run_vantage({"profile", "--compare", folder_ / "a.json"});
-  EXPECT_EQ(one.exit_code, 2);
-  EXPECT_THAT(one.err, HasSubstr("--compare is given 1 file, expected two"));
-  const ProcessResult missing =
-      run_vantage({"profile", "--compare", folder_ / "a.json", folder_ / "none.json"});
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.err, HasSubstr("none.json: no such file"));
+  expect_failure(run_vantage({"profile", "--compare", folder_ / "a.json"}), 2,
+                 "--compare is given 1 file, expected two");
+  expect_failure(run_vantage({"profile", "--compare", folder_ / "a.json", folder_ / "none.json"}),
+                 1, "none.json: no such file");
 }
 
 /// Of a sequence, in a folder that holds a finished run.
 class SlowProfiledRun : public RunTest {
  protected:
   SlowProfiledRun() {
-    const ProcessResult result = run(out_, {"--frames", "0-2"});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run(out_, {"--frames", "0-2"}));
     before_ = results_in(out_);
     entries_ = folder_.entries();
   }
@@ -282,12 +250,11 @@ class SlowProfiledRun : public RunTest {
     EXPECT_FALSE(fs::exists(out_ + "/profile.json"));
   }
 
-  [[nodiscard]] json profiled(const Arguments& command) const {
+  [[nodiscard]] json profiled(const Words& command) const {
     const std::string kept = folder_ / "profile.json";
-    const ProcessResult result =
-        run_vantage(joined({"profile", "--runs", "1", "--threads", "2", "--json", kept}, command));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    return result.exit_code == 0 ? read_report(kept) : json();
+    const ProcessResult result = succeeds(
+        run_vantage(joined({"profile", "--runs", "1", "--threads", "2", "--json", kept}, command)));
+    return result.exit_code == 0 ? read_json(kept) : json();
   }
 
   std::string out_ = folder_ / "out";
@@ -343,5 +310,4 @@ TEST_F(SlowProfiledRun, TakesAJobFile) {
   expect_untouched();
 }
 
-}  // namespace command_profile_test
-}  // namespace vantage
+}  // namespace vantage::command_profile_test

@@ -1,26 +1,13 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
 
 #include "engine/generation/layered_scene.h"
-#include "engine/io/images/photograph_io.h"
 #include "engine/rectification/stereo_calibration.h"
 #include "engine/rectification/vertical_error.h"
 #include "tests/apps/pair_fixture.h"
-#include "tests/apps/vantage_process.h"
 #include "tests/engine/unrectified_pair.h"
-#include "tests/temporary_folder.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace command_rectify_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
+namespace vantage::command_rectify_test {
 
 /// A pair of cameras that are turned by some degrees, as raw-left.png and raw-right.png.
 class RectifyTest : public testing::Test {
@@ -37,14 +24,10 @@ class RectifyTest : public testing::Test {
     }();
     return pair;
   }
-  [[nodiscard]] static ProcessResult rectify(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"rectify"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] static ProcessResult rectify(const Words& more) {
+    return run_vantage(joined({"rectify"}, more));
   }
-  [[nodiscard]] static nlohmann::json json_of(const std::string& path) {
-    return nlohmann::json::parse(read_file(path));
-  }
+  [[nodiscard]] static nlohmann::json json_of(const std::string& path) { return read_json(path); }
 
   Execution execution_{{.threads = 2}};
   TemporaryFolder folder_;
@@ -58,9 +41,9 @@ TEST_F(RectifyTest, FromTheImagesAlone) {
   const std::string report = folder_ / "report.json";
   const std::string rig = folder_ / "rig.yml";
   const std::string mask = folder_ / "valid.png";
-  const ProcessResult result = rectify({left_, right_, "-o", out, "--report", report, "--matrices",
-                                        rig, "--valid-mask", mask, "--kept-outline", "1"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result =
+      succeeds(rectify({left_, right_, "-o", out, "--report", report, "--matrices", rig,
+                        "--valid-mask", mask, "--kept-outline", "1"}));
   EXPECT_THAT(result.err, HasSubstr("rows are off by"));
   EXPECT_THAT(result.err, HasSubstr("disparities "));
 
@@ -89,9 +72,7 @@ TEST_F(RectifyTest, FromTheImagesAlone) {
 
   // The matrices are a calibration: the same images come of it.
   const std::string again = folder_ / "again";
-  const ProcessResult second =
-      rectify({left_, right_, "-o", again, "--calibration", rig, "--kept-outline", "1"});
-  ASSERT_EQ(second.exit_code, 0) << second.err;
+  succeeds(rectify({left_, right_, "-o", again, "--calibration", rig, "--kept-outline", "1"}));
   EXPECT_EQ(read_file(fs::path(again) / "raw-left.png"), read_file(fs::path(out) / "raw-left.png"));
   EXPECT_EQ(read_file(fs::path(again) / "raw-right.png"),
             read_file(fs::path(out) / "raw-right.png"));
@@ -109,9 +90,8 @@ TEST_F(RectifyTest, SeveralPairsGetOneRectificationWhateverTheThreads) {
     const std::string out = folder_ / (std::string("out-") + threads);
     const std::string rig = folder_ / (std::string("rig-") + threads + ".json");
     const ProcessResult result =
-        rectify({folder_ / "left", folder_ / "right", "-o", out, "--sample-pairs", "2", "--threads",
-                 threads, "--matrices", rig});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+        succeeds(rectify({folder_ / "left", folder_ / "right", "-o", out, "--sample-pairs", "2",
+                          "--threads", threads, "--matrices", rig}));
     EXPECT_THAT(result.err, HasSubstr("3 pairs of 320x240 pixels"));
     for (const char* name : {"left/000.png", "left/002.png", "right/001.png"}) {
       EXPECT_TRUE(fs::exists(fs::path(out) / name)) << name;
@@ -128,24 +108,20 @@ TEST_F(RectifyTest, SeveralPairsGetOneRectificationWhateverTheThreads) {
 /// Names of the photographs, in folders of their sides where both have one name.
 TEST_F(RectifyTest, ImagesKeepTheirNames) {
   const std::string rig = folder_ / "rig.yml";
-  ASSERT_EQ(rectify({left_, right_, "--matrices", rig}).exit_code, 0);
+  succeeds(rectify({left_, right_, "--matrices", rig}));
   for (const char* side : {"a", "b"}) {
     fs::create_directory(folder_ / side);
     fs::copy_file(std::string(side) == "a" ? left_ : right_, fs::path(folder_ / side) / "7 x.png");
   }
   const std::string out = folder_ / "out";
-  const ProcessResult result =
-      rectify({folder_ / "a/7 x.png", folder_ / "b", "-o", out, "--calibration", rig});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(files_below(out), testing::ElementsAre("left/7 x.png", "right/7 x.png"));
+  succeeds(rectify({folder_ / "a/7 x.png", folder_ / "b", "-o", out, "--calibration", rig}));
+  EXPECT_THAT(files_below(out), ElementsAre("left/7 x.png", "right/7 x.png"));
 
   fs::copy_file(left_, folder_ / "a/7 x.PNG");
   fs::copy_file(right_, folder_ / "b/8.png");
-  const ProcessResult doubled =
-      rectify({folder_ / "a", folder_ / "b", "-o", folder_ / "no", "--calibration", rig});
-  EXPECT_EQ(doubled.exit_code, 2);
-  EXPECT_TRUE(is_one_line(doubled, "rectify"));
-  EXPECT_THAT(doubled.err, HasSubstr("would get one name"));
+  expect_one_line(
+      rectify({folder_ / "a", folder_ / "b", "-o", folder_ / "no", "--calibration", rig}), 2,
+      "rectify", "would get one name");
   EXPECT_FALSE(fs::exists(folder_ / "no"));
   EXPECT_EQ(rectify({left_, right_, "-o", folder_ / "a/..", "--calibration", rig}).exit_code, 2)
       << "it would replace the photographs";
@@ -159,42 +135,35 @@ TEST_F(RectifyTest, BaselineGivesTheScale) {
   EXPECT_THAT(without.err, HasSubstr("the cameras have no scale"));
   EXPECT_TRUE(json_of(report)["results"]["baseline_m"].is_null());
   EXPECT_FALSE(read_stereo_calibration(rig).has_scale);
-  const std::vector<std::string> match = {
+  const Words match = {
       "match",         left_, right_,     "-o", folder_ / "map.pfm", "--depth", folder_ / "z.npy",
       "--calibration", rig,   "--method", "ssd"};
-  const ProcessResult refused = run_vantage(match);
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_TRUE(is_one_line(refused, "match"));
-  EXPECT_THAT(refused.err, HasSubstr("has no scale, because its cameras were estimated"));
+  expect_one_line(run_vantage(match), 1, "match",
+                  "has no scale, because its cameras were estimated");
   EXPECT_FALSE(fs::exists(folder_ / "map.pfm"));
 
-  const ProcessResult with = rectify({left_, right_, "--matrices", rig, "--report", report,
-                                      "--baseline", "0.25", "-o", folder_ / "out"});
-  ASSERT_EQ(with.exit_code, 0) << with.err;
+  const ProcessResult with = succeeds(rectify({left_, right_, "--matrices", rig, "--report", report,
+                                               "--baseline", "0.25", "-o", folder_ / "out"}));
   EXPECT_THAT(with.err, HasSubstr("baseline 0.25 m"));
   EXPECT_DOUBLE_EQ(json_of(report)["results"]["baseline_m"].get<double>(), 0.25);
   EXPECT_NEAR(read_stereo_calibration(rig).baseline(), 0.25, 1e-12);
   EXPECT_EQ(read_stereo_calibration(rig).metres_per_unit, 1);
   // Photographs that `match` rectifies itself, and those that `rectify` did.
-  ASSERT_EQ(run_vantage(match).exit_code, 0);
+  succeeds(run_vantage(match));
   const std::string depths = read_file(folder_ / "z.npy");
-  std::vector<std::string> again = match;
+  Words again = match;
   again[1] = folder_ / "out/raw-left.png";
   again[2] = folder_ / "out/raw-right.png";
   again.emplace_back("--already-rectified");
-  const ProcessResult rectified = run_vantage(again);
-  ASSERT_EQ(rectified.exit_code, 0) << rectified.err;
+  succeeds(run_vantage(again));
   EXPECT_EQ(read_file(folder_ / "z.npy"), depths);
   EXPECT_EQ(rectify({left_, right_, "--matrices", rig, "--baseline", "0"}).exit_code, 2);
 }
 
 TEST_F(RectifyTest, ExchangedImagesAreWarnedOf) {
   const std::string report = folder_ / "report.json";
-  const auto warned = [&](const std::vector<std::string>& arguments) {
-    std::vector<std::string> all = arguments;
-    all.insert(all.end(), {"--report", report});
-    const ProcessResult result = run_vantage(all);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto warned = [&](const Words& arguments) {
+    const ProcessResult result = succeeds(run_vantage(joined(arguments, {"--report", report})));
     return result.err.find("warning: left and right look exchanged") != std::string::npos;
   };
   const std::string rig = folder_ / "rig.yml";
@@ -224,8 +193,7 @@ TEST_F(RectifyTest, CalibrationsThatDoNotFitAreWarnedOf) {
   const std::string rig = folder_ / "rig.txt";
   write_file(rig, "P0: 350 0 160 0 0 350 120 0 0 0 1 0\nP1: 350 0 160 -35 0 350 120 0 0 0 1 0\n");
   const ProcessResult result =
-      rectify({left_, right_, "-o", folder_ / "out", "--calibration", rig});
-  EXPECT_EQ(result.exit_code, 0);
+      succeeds(rectify({left_, right_, "-o", folder_ / "out", "--calibration", rig}));
   EXPECT_THAT(result.err, HasSubstr("rig.txt (KITTI, cameras 0 and 1)"));
   EXPECT_THAT(
       result.err,
@@ -233,12 +201,8 @@ TEST_F(RectifyTest, CalibrationsThatDoNotFitAreWarnedOf) {
 }
 
 TEST_F(RectifyTest, ErrorsAreOneLine) {
-  const auto expect_error = [&](const std::vector<std::string>& arguments, int exit_code,
-                                const std::string& text) {
-    const ProcessResult result = rectify(arguments);
-    EXPECT_EQ(result.exit_code, exit_code) << result.err;
-    EXPECT_TRUE(is_one_line(result, "rectify"));
-    EXPECT_THAT(result.err, HasSubstr(text));
+  const auto expect_error = [&](const Words& arguments, int exit_code, const std::string& text) {
+    expect_one_line(rectify(arguments), exit_code, "rectify", text);
   };
   const std::string out = folder_ / "out";
   expect_error({left_, right_}, 2, "there is nothing to write");
@@ -270,7 +234,7 @@ TEST_F(RectifyTest, ErrorsAreOneLine) {
   expect_error({left_, turned_file, "-o", out}, 1, "as if the camera had only turned");
 
   const std::string other_size = folder_ / "other.yml";
-  ASSERT_EQ(rectify({left_, right_, "--matrices", other_size}).exit_code, 0);
+  succeeds(rectify({left_, right_, "--matrices", other_size}));
   std::string text = read_file(other_size);
   text.replace(text.find("image_width: 320"), 16, "image_width: 640");
   write_file(other_size, text);
@@ -284,15 +248,12 @@ TEST_F(RectifyTest, ErrorsAreOneLine) {
 TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {
   const std::string map = folder_ / "map.pfm";
   const std::string report = folder_ / "report.json";
-  const auto match = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {
-        "match",    left_, right_,     "-o",  map, "--disparities=0:20",
-        "--method", "ssd", "--report", report};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  const auto match = [&](const Words& more) {
+    return run_vantage(joined({"match", left_, right_, "-o", map, "--disparities=0:20", "--method",
+                               "ssd", "--report", report},
+                              more));
   };
-  const ProcessResult warned = match({});
-  ASSERT_EQ(warned.exit_code, 0) << warned.err;
+  const ProcessResult warned = succeeds(match({}));
   EXPECT_THAT(warned.err,
               AllOf(HasSubstr("match: warning: the pair is not rectified: rows are off by"),
                     HasSubstr("% more of the pixels wrong")));
@@ -316,23 +277,22 @@ TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {
   EXPECT_TRUE(json_of(report)["results"].contains("views"));
 
   const std::string rig = folder_ / "rig.yml";
-  ASSERT_EQ(rectify({left_, right_, "--matrices", rig}).exit_code, 0);
+  succeeds(rectify({left_, right_, "--matrices", rig}));
   for (const bool calibrated : {false, true}) {
-    std::vector<std::string> arguments = {"run",
-                                          "--left",
-                                          left_,
-                                          "--right",
-                                          right_,
-                                          "-o",
-                                          folder_ / (calibrated ? "run-c" : "run"),
-                                          "--disparities=0:20",
-                                          "--method",
-                                          "ssd"};
+    Words arguments = {"run",
+                       "--left",
+                       left_,
+                       "--right",
+                       right_,
+                       "-o",
+                       folder_ / (calibrated ? "run-c" : "run"),
+                       "--disparities=0:20",
+                       "--method",
+                       "ssd"};
     if (calibrated) {
       arguments.insert(arguments.end(), {"--calibration", rig});
     }
-    const ProcessResult run = run_vantage(arguments);
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const ProcessResult run = succeeds(run_vantage(arguments));
     EXPECT_EQ(run.err.find("warning: the pair is not rectified") == std::string::npos, calibrated)
         << run.err;
   }
@@ -357,23 +317,21 @@ TEST(RectifyChessboard, FromFeaturesOfAllPairs) {
   const TemporaryFolder out;
   for (const bool calibrated : {false, true}) {
     const std::string report = out / "report.json";
-    std::vector<std::string> arguments = {"rectify",
-                                          (folder / "left0[1-4].jpg").string(),
-                                          (folder / "right0[1-4].jpg").string(),
-                                          "--matrices",
-                                          out / "rig.yml",
-                                          "--report",
-                                          report};
+    Words arguments = {"rectify",
+                       (folder / "left0[1-4].jpg").string(),
+                       (folder / "right0[1-4].jpg").string(),
+                       "--matrices",
+                       out / "rig.yml",
+                       "--report",
+                       report};
     if (calibrated) {
       arguments.insert(arguments.end(), {"--calibration", folder / "stereo_reference.yml"});
     }
-    const ProcessResult result = run_vantage(arguments);
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    const auto error = nlohmann::json::parse(read_file(report))["results"]["vertical_error"];
+    succeeds(run_vantage(arguments));
+    const auto error = read_json(report)["results"]["vertical_error"];
     EXPECT_LT(error["rms_px"].get<double>(), 0.5);
     EXPECT_GT(error["inliers"].get<int>(), 300);
   }
 }
 
-}  // namespace command_rectify_test
-}  // namespace vantage
+}  // namespace vantage::command_rectify_test

@@ -1,32 +1,19 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "engine/image/stereo_packing.h"
 #include "engine/io/video/video_io.h"
-#include "tests/apps/pair_fixture.h"
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace command_run_test {
-
-using testing::ContainsRegex;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::StartsWith;
+namespace vantage::command_run_test {
 
 constexpr int kFrames = 6;
 
 /// Names of the files a run made, without those of its journal.
-std::vector<std::string> made_in(const std::string& folder) {
-  std::vector<std::string> names;
+Words made_in(const std::string& folder) {
+  Words names;
   for (const auto& [name, content] : results_in(folder)) {
     names.push_back(name);
   }
@@ -42,8 +29,8 @@ std::string last_line(const ProcessResult& result) {
 class RunCommand : public testing::Test {
  protected:
   RunCommand() {
-    std::filesystem::create_directories(left_);
-    std::filesystem::create_directories(right_);
+    fs::create_directories(left_);
+    fs::create_directories(right_);
     for (int frame = 0; frame < kFrames; ++frame) {
       BookPairOptions options;
       options.width_px = 47;
@@ -57,15 +44,11 @@ class RunCommand : public testing::Test {
 
   static std::string name(int frame) { return "/frame" + std::to_string(frame) + ".png"; }
 
-  [[nodiscard]] std::vector<std::string> arguments(
-      const std::string& out, const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all = {"run",  "--left", left_, "--right",
-                                    right_, "-o",     out,   "--disparities=0:9"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+  [[nodiscard]] Words arguments(const std::string& out, const Words& more = {}) const {
+    return joined({"run", "--left", left_, "--right", right_, "-o", out, "--disparities=0:9"},
+                  more);
   }
-  [[nodiscard]] ProcessResult run(const std::string& out,
-                                  const std::vector<std::string>& more = {}) const {
+  [[nodiscard]] ProcessResult run(const std::string& out, const Words& more = {}) const {
     return run_vantage(arguments(out, more));
   }
 
@@ -77,23 +60,18 @@ class RunCommand : public testing::Test {
 TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
   const std::string out = folder_ / "out";
   const ProcessResult result =
-      run(out, {"--save", "disparity,right-disparity,unmatched,preview,views", "--view", "0.5",
-                "--report", folder_ / "r.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+      succeeds(run(out, {"--save", "disparity,right-disparity,unmatched,preview,views", "--view",
+                         "0.5", "--report", folder_ / "r.json"}));
   EXPECT_THAT(result.err, ContainsRegex("6 frames of 47x29 pixels, [0-9.]+ frames/s -> "));
   SCOPED_TRACE(test::sample_name());
   for (const int frame : sampled_range(0, kFrames - 1, 0, 12)) {
     const std::string left = left_ + name(frame);
     const std::string right = right_ + name(frame);
-    ASSERT_EQ(run_vantage({"match", left, right, "--disparities=0:9", "-o", folder_ / "l.pfm",
-                           "--output-right", folder_ / "r.pfm", "--unmatched", folder_ / "u.png",
-                           "--preview", folder_ / "p.png", "--report", folder_ / "m.json"})
-                  .exit_code,
-              0);
-    ASSERT_EQ(run_vantage({"synth", left, right, "--disparities=0:9", "-o", folder_ / "v.png",
-                           "--view", "0.5"})
-                  .exit_code,
-              0);
+    succeeds(run_vantage({"match", left, right, "--disparities=0:9", "-o", folder_ / "l.pfm",
+                          "--output-right", folder_ / "r.pfm", "--unmatched", folder_ / "u.png",
+                          "--preview", folder_ / "p.png", "--report", folder_ / "m.json"}));
+    succeeds(run_vantage(
+        {"synth", left, right, "--disparities=0:9", "-o", folder_ / "v.png", "--view", "0.5"}));
     const auto written = [&](const std::string& kind, const std::string& extension) {
       return read_file(out + "/" + kind + "/00000" + std::to_string(frame) + extension);
     };
@@ -104,10 +82,10 @@ TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
     EXPECT_EQ(written("views", ".png"), read_file(folder_ / "v.png")) << frame;
   }
   EXPECT_EQ(made_in(out).size(), 5U * kFrames);
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["command"], "run");
   EXPECT_EQ(report["results"]["frames"], kFrames);
-  const auto of_pair = nlohmann::json::parse(read_file(folder_ / "m.json"));
+  const auto of_pair = read_json(folder_ / "m.json");
   EXPECT_GE(of_pair["cells"], 47.0 * 29 * 10 * 2);
   EXPECT_EQ(report["cells"], of_pair["cells"].get<double>() * kFrames);
   EXPECT_LE(report["seconds"]["compute"], report["seconds"]["wall"]);
@@ -127,26 +105,24 @@ TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {
 }
 
 TEST_F(RunCommand, QuietIsQuietInTheSurveyToo) {
-  const ProcessResult result = run(folder_ / "out", {"--save", "preview", "--preview-range", "shot",
-                                                     "--progress", "bar", "--quiet"});
-  EXPECT_EQ(result.exit_code, 0);
+  const ProcessResult result = succeeds(
+      run(folder_ / "out", words("--save preview --preview-range shot --progress bar --quiet")));
   EXPECT_EQ(result.err, "");
 }
 
 TEST_F(RunCommand, FilesDoNotDependOnExecutionNorFramesInFlight) {
-  const std::vector<std::string> outputs = {
+  const Words outputs = {
       "--save", "disparity,preview,views", "--view", "0.25", "--view", "1.5", "--format", "png"};
-  const auto run_with = [&](const std::string& out, std::vector<std::string> more) {
+  const auto run_with = [&](const std::string& out, Words more) {
     more.insert(more.end(), outputs.begin(), outputs.end());
-    const ProcessResult result = run(out, more);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run(out, more));
     return made_in(out);
   };
   const std::string expected = folder_ / "expected";
   const auto names = run_with(expected, {"--executor", "serial", "--in-flight", "1"});
   ASSERT_EQ(names.size(), 4U * kFrames);
   EXPECT_EQ(names.back(), "views/1.5/000005.png");
-  const std::vector<std::vector<std::string>> ways = {
+  const std::vector<Words> ways = {
       {"--executor", "tbb", "--threads", "1", "--in-flight", "2"},
       {"--executor", "tbb", "--threads", "4", "--in-flight", "5", "--strip-width", "9"},
       {"--executor", "tbb", "--threads", "3", "--in-flight", "1"},
@@ -162,11 +138,9 @@ TEST_F(RunCommand, FilesDoNotDependOnExecutionNorFramesInFlight) {
 }
 
 TEST_F(RunCommand, TakesPatternsGlobsAndVideos) {
-  ASSERT_EQ(run(folder_ / "a").exit_code, 0);
-  ASSERT_EQ(run_vantage({"run", "--left", left_ + "/frame%d.png", "--right", right_ + "/*.png",
-                         "-o", folder_ / "b", "--disparities=0:9", "--quiet"})
-                .exit_code,
-            0);
+  succeeds(run(folder_ / "a"));
+  succeeds(run_vantage({"run", "--left", left_ + "/frame%d.png", "--right", right_ + "/*.png", "-o",
+                        folder_ / "b", "--disparities=0:9", "--quiet"}));
   EXPECT_EQ(results_in(folder_ / "a"), results_in(folder_ / "b"));
   for (const std::string side : {"left", "right"}) {
     VideoWriter video(folder_ / (side + ".mp4"), 48, 30, {});
@@ -181,10 +155,8 @@ TEST_F(RunCommand, TakesPatternsGlobsAndVideos) {
     }
     video.finish();
   }
-  const ProcessResult result =
-      run_vantage({"run", "--left", folder_ / "left.mp4", "--right", folder_ / "right.mp4", "-o",
-                   folder_ / "c", "--disparities=0:9"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(run_vantage({"run", "--left", folder_ / "left.mp4", "--right", folder_ / "right.mp4",
+                        "-o", folder_ / "c", "--disparities=0:9"}));
   EXPECT_THAT(made_in(folder_ / "c"),
               ElementsAre("disparity/000000.pfm", "disparity/000001.pfm", "disparity/000002.pfm"));
 }
@@ -215,8 +187,8 @@ TEST_F(RunCommand, NamesTheFrameWhoseSizesDiffer) {
 }
 
 TEST_F(RunCommand, UnequalLengthsAreAnErrorAfterTheCommonFrames) {
-  std::filesystem::remove(right_ + name(5));
-  std::filesystem::remove(right_ + name(4));
+  fs::remove(right_ + name(5));
+  fs::remove(right_ + name(4));
   ProcessResult result = run(folder_ / "out");
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(last_line(result), HasSubstr("all 4 pairs are done, but"));
@@ -224,15 +196,15 @@ TEST_F(RunCommand, UnequalLengthsAreAnErrorAfterTheCommonFrames) {
   EXPECT_EQ(made_in(folder_ / "out").size(), 4U);
   result = run(folder_ / "out", {"--resume", "--keep-going"});
   EXPECT_EQ(result.exit_code, 3) << result.err;
-  EXPECT_EQ(run(folder_ / "out", {"--resume", "--frames", "0-3"}).exit_code, 0);
+  succeeds(run(folder_ / "out", {"--resume", "--frames", "0-3"}));
 }
 
 TEST_F(RunCommand, InterruptFinishesTheFramesUnderWay) {
   // Enough frames that the signal comes long before the end.
   constexpr int kMany = 4000;
   for (int frame = kFrames; frame < kMany; ++frame) {
-    std::filesystem::create_symlink(left_ + name(0), left_ + name(frame));
-    std::filesystem::create_symlink(right_ + name(0), right_ + name(frame));
+    fs::create_symlink(left_ + name(0), left_ + name(frame));
+    fs::create_symlink(right_ + name(0), right_ + name(frame));
   }
   const std::string out = folder_ / "out";
   const TemporaryFolder streams;
@@ -251,15 +223,14 @@ TEST_F(RunCommand, InterruptFinishesTheFramesUnderWay) {
   char last[64];
   std::snprintf(last, sizeof last, "disparity/%06zu.pfm", files.size() - 1);
   EXPECT_EQ(files.back(), last);
-  EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "r.json"))["results"]["frames"],
-            files.size());
+  EXPECT_EQ(read_json(folder_ / "r.json")["results"]["frames"], files.size());
 }
 
 using InputRunCommand = RunCommand;
 
 TEST_F(InputRunCommand, WrongUsageIsOneLineAndExit2) {
   const std::string out = folder_ / "out";
-  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+  const std::vector<Refusal> refusals = {
       {{"--save", "disparity,colour"}, "--save is 'colour'"},
       {{"--save", "views"}, "expected --view XS"},
       {{"--save", "disparity", "--view", "0.5"}, "save has no views"},
@@ -297,31 +268,20 @@ TEST_F(InputRunCommand, WrongUsageIsOneLineAndExit2) {
       {{"-p", "2"}, "unknown option '-p'; 'vantage run --help-all' lists all"},
       {{"--overwrite", "--resume"}, "--overwrite and --resume"},
       {{"--overwrite", "--shard", "1/2"}, "--overwrite with --shard"}};
-  SCOPED_TRACE(test::sample_name());
-  for (const auto& [more, says] :
-       sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
-    const ProcessResult result = run(out, more);
-    EXPECT_EQ(result.exit_code, 2) << says;
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr(says));
-  }
-  EXPECT_THAT(files_below(out), IsEmpty());
-  std::filesystem::rename(left_, folder_ / "disparity");
-  const ProcessResult result =
-      run_vantage({"run", "--left", folder_ / "disparity", "--right", right_, "-o",
-                   folder_.path().string(), "--disparities=0:9"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("would write into"));
+  expect_refusals("run", folder_.path(), refusals,
+                  [&](const Words& words) { return run(out, words); });
+  fs::rename(left_, folder_ / "disparity");
+  expect_failure(run_vantage({"run", "--left", folder_ / "disparity", "--right", right_, "-o",
+                              folder_.path().string(), "--disparities=0:9"}),
+                 2, "would write into");
 }
 
 TEST_F(InputRunCommand, BadSourcesAreOneLineAndExit1) {
-  std::filesystem::create_directory(folder_ / "empty");
+  fs::create_directory(folder_ / "empty");
   for (const std::string& source :
        {folder_ / "none", folder_ / "empty", folder_ / "none/%03d.png", folder_ / "none/*.png"}) {
-    const ProcessResult result =
-        run_vantage({"run", "--left", left_, "--right", source, "-o", folder_ / "out"});
-    EXPECT_EQ(result.exit_code, 1) << source;
-    EXPECT_TRUE(is_one_line(result, "run"));
+    expect_one_line(run_vantage({"run", "--left", left_, "--right", source, "-o", folder_ / "out"}),
+                    1, "run");
   }
   write_file(folder_ / "file", "not a folder");
   const ProcessResult result = run(folder_ / "file");
@@ -330,14 +290,12 @@ TEST_F(InputRunCommand, BadSourcesAreOneLineAndExit1) {
 }
 
 TEST_F(InputRunCommand, EveryKindOfInputGivesTheSame) {
-  const std::vector<std::string> outputs = {"--save",  "disparity,views",   "--view", "0.5",
-                                            "--quiet", "--disparities=0:9", "-o"};
-  const auto made_from = [&](std::vector<std::string> input, const std::string& out) {
+  const Words outputs = words("--save disparity,views --view 0.5 --quiet --disparities=0:9 -o");
+  const auto made_from = [&](Words input, const std::string& out) {
     input.insert(input.begin(), "run");
     input.insert(input.end(), outputs.begin(), outputs.end());
     input.push_back(folder_ / out);
-    const ProcessResult result = run_vantage(input);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run_vantage(input));
     return results_in(folder_ / out);
   };
   const auto expected = made_from({"--left", left_, "--right", right_}, "two");
@@ -345,8 +303,8 @@ TEST_F(InputRunCommand, EveryKindOfInputGivesTheSame) {
   // A list, with names relative to it.
   std::string list = "left,right\n# frames\n\n";
   // One picture for both, and one camera that stands where the left and the right one did in turn.
-  std::filesystem::create_directories(folder_ / "packed");
-  std::filesystem::create_directories(folder_ / "walk");
+  fs::create_directories(folder_ / "packed");
+  fs::create_directories(folder_ / "walk");
   for (int frame = 0; frame < kFrames; ++frame) {
     list += "left" + name(frame) + ",\"right" + name(frame) + "\"\n";
     const Photograph left = read_photograph(left_ + name(frame));
@@ -362,14 +320,14 @@ TEST_F(InputRunCommand, EveryKindOfInputGivesTheSame) {
   EXPECT_EQ(made_from({"--pairs", folder_ / "pairs.csv"}, "list"), expected);
   EXPECT_EQ(made_from({"--stereo", folder_ / "packed", "--packing", "abr"}, "packed-out"),
             expected);
-  EXPECT_EQ(run_vantage({"merge", folder_ / "packed-out"}).exit_code, 0);
+  succeeds(run_vantage({"merge", folder_ / "packed-out"}));
   auto walked = made_from({"--sequence", folder_ / "walk", "--step", "1"}, "walk-out");
   ASSERT_EQ(walked.size(), 2U * (2 * kFrames - 1));
   EXPECT_EQ(walked["disparity/000004.pfm"], expected.at("disparity/000002.pfm"));
   // Shifted against each other, and back.
-  std::filesystem::create_directories(folder_ / "late");
+  fs::create_directories(folder_ / "late");
   for (int frame = 0; frame < kFrames; ++frame) {
-    std::filesystem::copy_file(right_ + name(frame), folder_ / "late" + name(frame + 3));
+    fs::copy_file(right_ + name(frame), folder_ / "late" + name(frame + 3));
   }
   write_photograph(folder_ / "late" + name(2), {Image<std::uint8_t>(47, 29)});
   EXPECT_EQ(made_from({"--left", left_, "--right", folder_ / "late", "--offset", "1"}, "late-out"),
@@ -377,15 +335,13 @@ TEST_F(InputRunCommand, EveryKindOfInputGivesTheSame) {
 }
 
 TEST_F(RunCommand, VideosHoldWhatTheImagesShow) {
-  const std::vector<std::string> outputs = {
+  const Words outputs = {
       "--save",    "preview,views,stereo", "--view-path", "0=0,5=1",        "--stereo-views",
       "0.25,0.75", "--stereo-packing",     "sbsl",        "--chunk-frames", "4"};
-  std::vector<std::string> videos = outputs;
-  videos.insert(videos.end(),
-                {"--video", "preview,views,stereo", "--crf", "4", "--fps", "30000/1001"});
-  ASSERT_EQ(run(folder_ / "images", outputs).exit_code, 0);
-  const ProcessResult result = run(folder_ / "videos", videos);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Words videos =
+      joined(outputs, {"--video", "preview,views,stereo", "--crf", "4", "--fps", "30000/1001"});
+  succeeds(run(folder_ / "images", outputs));
+  succeeds(run(folder_ / "videos", videos));
   EXPECT_THAT(made_in(folder_ / "videos"), ElementsAre("preview.mp4", "stereo.mp4", "views.mp4"));
   for (const std::string kind : {"preview", "views", "stereo"}) {
     VideoReader video(folder_ / "videos/" + kind + ".mp4");
@@ -399,24 +355,19 @@ TEST_F(RunCommand, VideosHoldWhatTheImagesShow) {
 }
 
 TEST_F(RunCommand, ADryRunTellsThePlanAndWritesNothing) {
-  const ProcessResult result = run(
-      folder_ / "out", {"--dry-run", "--memory", "900M", "--frames", "2-3", "--in-flight", "3"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = succeeds(run(
+      folder_ / "out", {"--dry-run", "--memory", "900M", "--frames", "2-3", "--in-flight", "3"}));
   EXPECT_EQ(result.err, "");
   for (const char* part : {"6 pairs of 47x29", "frames 2-3", "disparities 0:9",
                            "3 frames in flight", "of 900 MiB", "writes disparity to"}) {
     EXPECT_THAT(result.out, HasSubstr(part));
   }
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
-  const ProcessResult small = run(folder_ / "out", {"--dry-run", "--memory", "1M"});
-  EXPECT_EQ(small.exit_code, 1);
-  EXPECT_TRUE(is_one_line(small, "run"));
-  EXPECT_THAT(small.err, HasSubstr("memory is 1 MiB, expected at least"));
-  const ProcessResult beyond = run(folder_ / "out", {"--frames", "6-9"});
-  EXPECT_EQ(beyond.exit_code, 1);
-  EXPECT_THAT(beyond.err, HasSubstr("--frames starts at 6 but the input has 6 frames"));
-  const ProcessResult partly = run(folder_ / "partly", {"--frames", "4-9", "--dry-run"});
-  EXPECT_EQ(partly.exit_code, 0) << partly.err;
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  expect_one_line(run(folder_ / "out", {"--dry-run", "--memory", "1M"}), 1, "run",
+                  "memory is 1 MiB, expected at least");
+  expect_failure(run(folder_ / "out", {"--frames", "6-9"}), 1,
+                 "--frames starts at 6 but the input has 6 frames");
+  const ProcessResult partly = succeeds(run(folder_ / "partly", {"--frames", "4-9", "--dry-run"}));
   EXPECT_THAT(partly.err, HasSubstr("run: warning: --frames 4-9 ends after the input, which has 6 "
                                     "frames (0 to 5)\n"));
   const ProcessResult every =
@@ -425,38 +376,27 @@ TEST_F(RunCommand, ADryRunTellsThePlanAndWritesNothing) {
 }
 
 TEST_F(InputRunCommand, JobFilesHoldEverything) {
-  const std::vector<std::string> more = {"--save",       "preview,views,stereo",
-                                         "--view",       "0.25",
-                                         "--view-path",  "0=0,5=1",
-                                         "--video",      "stereo",
-                                         "--fps",        "12.5",
-                                         "--frames",     "1-4",
-                                         "--iterations", "2",
-                                         "--memory",     "2G",
-                                         "--keep-going", "--no-sound"};
-  std::vector<std::string> printed = arguments(folder_ / "job", more);
+  const Words more = words(
+      "--save preview,views,stereo --view 0.25 --view-path 0=0,5=1 --video stereo --fps "
+      "12.5 --frames 1-4 --iterations 2 --memory 2G --keep-going --no-sound");
+  Words printed = arguments(folder_ / "job", more);
   printed.push_back("--print-config");
-  const ProcessResult config = run_vantage(printed);
-  ASSERT_EQ(config.exit_code, 0) << config.err;
+  const ProcessResult config = succeeds(run_vantage(printed));
   write_file(folder_ / "job.toml", config.out);
   const ProcessResult again = run_vantage({"run", folder_ / "job.toml", "--print-config"});
   EXPECT_EQ(again.out, config.out);
-  const ProcessResult options = run(folder_ / "options", more);
-  ASSERT_EQ(options.exit_code, 0) << options.err;
-  const ProcessResult job = run_vantage({"run", folder_ / "job.toml"});
-  ASSERT_EQ(job.exit_code, 0) << job.err;
+  const ProcessResult options = succeeds(run(folder_ / "options", more));
+  const ProcessResult job = succeeds(run_vantage({"run", folder_ / "job.toml"}));
   EXPECT_EQ(results_in(folder_ / "job"), results_in(folder_ / "options"));
   write_file(folder_ / "typo.toml", "keep-goin = true\n");
-  const ProcessResult typo = run_vantage({"run", folder_ / "typo.toml"});
-  EXPECT_EQ(typo.exit_code, 2);
-  EXPECT_THAT(typo.err,
-              HasSubstr("unknown key 'keep-goin', the nearest known one is 'keep-going'"));
+  expect_failure(run_vantage({"run", folder_ / "typo.toml"}), 2,
+                 "unknown key 'keep-goin', the nearest known one is 'keep-going'");
   EXPECT_EQ(run_vantage({"run", folder_ / "job.toml", "--config", folder_ / "job.toml"}).exit_code,
             2);
 }
 
 TEST_F(RunCommand, EveryNthFrame) {
-  ASSERT_EQ(run(folder_ / "all").exit_code, 0);
+  succeeds(run(folder_ / "all"));
   const FolderContent all = results_in(folder_ / "all");
   const auto of_frames = [&](const std::vector<int>& frames) {
     FolderContent content;
@@ -466,67 +406,54 @@ TEST_F(RunCommand, EveryNthFrame) {
     }
     return content;
   };
-  ASSERT_EQ(run(folder_ / "every", {"--every", "2"}).exit_code, 0);
+  succeeds(run(folder_ / "every", {"--every", "2"}));
   EXPECT_EQ(results_in(folder_ / "every"), of_frames({0, 2, 4}));
-  ASSERT_EQ(run(folder_ / "step", {"--frames", "1-4:3"}).exit_code, 0);
+  succeeds(run(folder_ / "step", {"--frames", "1-4:3"}));
   EXPECT_EQ(results_in(folder_ / "step"), of_frames({1, 4}));
   // Parts count the frames of the input, and a part is continued by its folder alone.
   const std::string parts = folder_ / "parts";
-  ASSERT_EQ(run(parts, {"--every", "2", "--frames", "3-5"}).exit_code, 0);
+  succeeds(run(parts, {"--every", "2", "--frames", "3-5"}));
   EXPECT_EQ(journalled_frames(parts), (std::vector<int>{2}));
-  ASSERT_EQ(run(parts, {"--every", "2", "--frames", "0-2"}).exit_code, 0);
+  succeeds(run(parts, {"--every", "2", "--frames", "0-2"}));
   EXPECT_EQ(results_in(parts), of_frames({0, 2, 4}));
-  std::filesystem::remove(folder_ / "step/disparity/000001.pfm");
-  ASSERT_EQ(run_vantage({"run", "-o", folder_ / "step", "--resume"}).exit_code, 0);
+  fs::remove(folder_ / "step/disparity/000001.pfm");
+  succeeds(run_vantage({"run", "-o", folder_ / "step", "--resume"}));
   EXPECT_EQ(results_in(folder_ / "step"), of_frames({1, 4}));
   EXPECT_THAT(run(parts, {"--resume"}).err, HasSubstr("every was"));
-  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+  const std::vector<Refusal> refusals = {
       {{"--every", "0"}, "every is 0, expected 1 to"},
       {{"--every", "2x"}, "--every is '2x', expected a number of frames"},
       {{"--every", "4s"}, "every is 4s, but images have no frame rate"},
       {{"--every", "0s"}, "every is 0s, expected 0.001"},
       {{"--frames", "0-5:0"}, "--frames is '0-5:0', expected a range"},
       {{"--frames", "0-5:2", "--every", "3"}, "expected one of the two"}};
-  for (const auto& [options, message] : cases) {
-    const ProcessResult result = run(folder_ / "wrong", options);
-    EXPECT_EQ(result.exit_code, 2) << message;
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr(message));
-  }
+  expect_refusals("run", folder_.path(), refusals,
+                  [&](const Words& words) { return run(folder_ / "wrong", words); });
   EXPECT_THAT(run(folder_ / "wrong", {"--every", "3", "--frames", "1-2"}).err,
               HasSubstr("--frames 1-2 has none of the 2 frames that --every 3 takes"));
 }
 
 TEST_F(RunCommand, MergeChecksAndJoinsWhatPartsHaveMade) {
-  const std::vector<std::string> outputs = {"--save",  "disparity,preview", "--video",
-                                            "preview", "--chunk-frames",    "2"};
-  ASSERT_EQ(run(folder_ / "whole", outputs).exit_code, 0);
+  const Words outputs = words("--save disparity,preview --video preview --chunk-frames 2");
+  succeeds(run(folder_ / "whole", outputs));
   const std::string out = folder_ / "parts";
-  const auto part = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> all = outputs;
-    all.insert(all.end(), more.begin(), more.end());
-    return run(out, all).exit_code;
-  };
+  const auto part = [&](const Words& more) { return run(out, joined(outputs, more)).exit_code; };
   EXPECT_EQ(run_vantage({"merge", out}).exit_code, 1);
   ASSERT_EQ(part({"--shard", "3/3"}), 0);
   ASSERT_EQ(part({"--shard", "1/3"}), 0);
-  const ProcessResult incomplete = run_vantage({"merge", out});
-  EXPECT_EQ(incomplete.exit_code, 1);
-  EXPECT_TRUE(is_one_line(incomplete, "merge"));
-  EXPECT_THAT(incomplete.err, HasSubstr("2 of 6 frames are missing (2-3)"));
+  expect_one_line(run_vantage({"merge", out}), 1, "merge", "2 of 6 frames are missing (2-3)");
   EXPECT_EQ(run_vantage({"merge", out, "--partial"}).exit_code, 1);
-  EXPECT_FALSE(std::filesystem::exists(out + "/preview.mp4"));
+  EXPECT_FALSE(fs::exists(out + "/preview.mp4"));
   ASSERT_EQ(part({"--frames", "2-3"}), 0);
-  const ProcessResult complete = run_vantage({"merge", out, "--report", folder_ / "m.json"});
-  EXPECT_EQ(complete.exit_code, 0) << complete.err;
+  const ProcessResult complete =
+      succeeds(run_vantage({"merge", out, "--report", folder_ / "m.json"}));
   EXPECT_THAT(complete.err, HasSubstr("parts holds all 6 frames\n"));
   EXPECT_EQ(results_in(out), results_in(folder_ / "whole"));
-  EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "m.json"))["results"]["frames"], 6);
-  EXPECT_EQ(run_vantage({"merge", out}).exit_code, 0);
+  EXPECT_EQ(read_json(folder_ / "m.json")["results"]["frames"], 6);
+  succeeds(run_vantage({"merge", out}));
   EXPECT_EQ(results_in(out), results_in(folder_ / "whole"));
-  std::filesystem::remove(out + "/disparity/000004.pfm");
+  fs::remove(out + "/disparity/000004.pfm");
   EXPECT_THAT(run_vantage({"merge", out}).err, HasSubstr("1 of 6 frames are missing (4)"));
 }
 
-}  // namespace command_run_test
-}  // namespace vantage
+}  // namespace vantage::command_run_test

@@ -1,33 +1,16 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
-#include <filesystem>
 #include <fstream>
-#include <map>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
-#include "engine/io/images/photograph_io.h"
 #include "engine/io/video/video_io.h"
 #include "tests/apps/pair_fixture.h"
-#include "tests/apps/vantage_process.h"
 #include "tests/engine/unrectified_pair.h"
-#include "tests/temporary_folder.h"
 
-namespace vantage {
-namespace command_scene_test {
-
-namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::command_scene_test {
 
 /// A grid of 3 by 2 cameras, half a baseline apart, in DIR/images.
 class SceneCommand : public testing::Test {
@@ -54,26 +37,17 @@ class SceneCommand : public testing::Test {
   [[nodiscard]] double psnr(const std::string& file, double x, double y) const {
     return evaluate_view(read_photograph(file), truth_at(x, y), execution_).psnr_db;
   }
-  [[nodiscard]] ProcessResult build(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"scene",    "build",   "-o", place_, "--disparities=0:8",
-                                          "--preset", "balanced"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult build(const Words& more) const {
+    return run_vantage(joined(
+        {"scene", "build", "-o", place_, "--disparities=0:8", "--preset", "balanced"}, more));
   }
-  [[nodiscard]] ProcessResult build_grid(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"--images", images_,     "--grid",
-                                          "3x2",      "--spacing", "0.5,0.5"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return build(arguments);
+  [[nodiscard]] ProcessResult build_grid(const Words& more = {}) const {
+    return build(joined({"--images", images_, "--grid", "3x2", "--spacing", "0.5,0.5"}, more));
   }
-  [[nodiscard]] ProcessResult view(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"scene", "view", place_};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult view(const Words& more) const {
+    return run_vantage(joined({"scene", "view", place_}, more));
   }
-  static nlohmann::json json_in(const std::string& file) {
-    return nlohmann::json::parse(read_file(file));
-  }
+  static nlohmann::json json_in(const std::string& file) { return read_json(file); }
 
   mutable Execution execution_{{.threads = 2}};
   LayeredScene scene_{small_scene(), execution_};
@@ -83,8 +57,7 @@ class SceneCommand : public testing::Test {
 };
 
 TEST_F(SceneCommand, BuildsAGridAndRendersViewsOfIt) {
-  const ProcessResult built = build_grid({"--report", folder_ / "build.json"});
-  ASSERT_EQ(built.exit_code, 0) << built.err;
+  const ProcessResult built = succeeds(build_grid({"--report", folder_ / "build.json"}));
   EXPECT_THAT(built.err, HasSubstr("6 images, 7 edges, 7 of them matched now"));
   const nlohmann::json build_report = json_in(folder_ / "build.json");
   EXPECT_EQ(build_report.at("results").at("triangles"), 4);
@@ -93,10 +66,9 @@ TEST_F(SceneCommand, BuildsAGridAndRendersViewsOfIt) {
   EXPECT_EQ(build_report.at("settings").at("grid"), "3x2");
 
   const ProcessResult seen =
-      view({"--at", "0.3,0.2", "--at=0.75,0", "-o", folder_ / "v%d.png", "--hole-mask",
-            folder_ / "h%d.png", "--report", folder_ / "view.json"});
-  ASSERT_EQ(seen.exit_code, 0) << seen.err;
-  EXPECT_THAT(seen.err, testing::Not(HasSubstr("outside")));
+      succeeds(view({"--at", "0.3,0.2", "--at=0.75,0", "-o", folder_ / "v%d.png", "--hole-mask",
+                     folder_ / "h%d.png", "--report", folder_ / "view.json"}));
+  EXPECT_THAT(seen.err, Not(HasSubstr("outside")));
   EXPECT_GE(psnr(folder_ / "v0.png", 0.3, 0.2), 29);
   EXPECT_GE(psnr(folder_ / "v1.png", 0.75, 0), 29);
   EXPECT_TRUE(fs::exists(folder_ / "h1.png"));
@@ -106,11 +78,10 @@ TEST_F(SceneCommand, BuildsAGridAndRendersViewsOfIt) {
   EXPECT_EQ(views[0].at("x"), 0.3);
 
   // Where a camera stood its photograph comes back.
-  ASSERT_EQ(view({"--at", "1,0.5", "-o", folder_ / "same.png"}).exit_code, 0);
+  succeeds(view({"--at", "1,0.5", "-o", folder_ / "same.png"}));
   EXPECT_EQ(read_file(folder_ / "same.png"), read_file(images_ + "/5.png"));
 
-  const ProcessResult info = run_vantage({"scene", "info", place_});
-  EXPECT_EQ(info.exit_code, 0);
+  const ProcessResult info = succeeds(run_vantage({"scene", "info", place_}));
   EXPECT_THAT(info.out, AllOf(HasSubstr("images 6, 106x74 pixels"), HasSubstr("../images/4.png"),
                               HasSubstr("edges 7, 7 of them matched"),
                               HasSubstr("1-4 along y, length 0.5, disparities 0:8, matched 9"),
@@ -119,17 +90,16 @@ TEST_F(SceneCommand, BuildsAGridAndRendersViewsOfIt) {
 
 TEST_F(SceneCommand, AListOfPositionsMayLeaveImagesOut) {
   write_file(images_ + "/list.csv", "image,x,y\n0.png,0,0\n2.png,10,0\n3.png,0,5\n5.png,10,5\n");
-  ASSERT_EQ(build({"--positions", images_ + "/list.csv"}).exit_code, 0);
-  ASSERT_EQ(view({"--at", "5,5", "-o", folder_ / "v.png"}).exit_code, 0);
+  succeeds(build({"--positions", images_ + "/list.csv"}));
+  succeeds(view({"--at", "5,5", "-o", folder_ / "v.png"}));
   EXPECT_GE(psnr(folder_ / "v.png", 0.5, 0.5), 26);
 }
 
 TEST_F(SceneCommand, ASecondBuildKeepsWhatIsThere) {
-  ASSERT_EQ(build_grid().exit_code, 0);
+  succeeds(build_grid());
   const std::string map = place_ + "/maps/001-004-second.pfm";
   const std::string before = read_file(map);
-  const ProcessResult again = build_grid({"--threads", "1"});
-  EXPECT_EQ(again.exit_code, 0);
+  const ProcessResult again = succeeds(build_grid({"--threads", "1"}));
   EXPECT_THAT(again.err, HasSubstr("7 edges, 0 of them matched now"));
   fs::remove(map);
   EXPECT_THAT(view({"--at", "0.5,0.25", "-o", folder_ / "v.png"}).err,
@@ -140,10 +110,9 @@ TEST_F(SceneCommand, ASecondBuildKeepsWhatIsThere) {
 }
 
 TEST_F(SceneCommand, MakesMoviesAndSaysWhatLiesOutside) {
-  ASSERT_EQ(build_grid({"--quiet"}).exit_code, 0);
+  succeeds(build_grid({"--quiet"}));
   const ProcessResult movie =
-      view({"--sweep", "0,0:1.1,0.5:8", "--fps", "8", "-o", folder_ / "movie.mp4"});
-  ASSERT_EQ(movie.exit_code, 0) << movie.err;
+      succeeds(view({"--sweep", "0,0:1.1,0.5:8", "--fps", "8", "-o", folder_ / "movie.mp4"}));
   EXPECT_THAT(movie.err, HasSubstr("1 of 8 views are outside the area of the images"));
   EXPECT_EQ(VideoReader(folder_ / "movie.mp4").frame_count(), 8);
   EXPECT_THAT(view({"--at=-0.1,-0.1", "-o", folder_ / "v.png"}).err,
@@ -152,26 +121,25 @@ TEST_F(SceneCommand, MakesMoviesAndSaysWhatLiesOutside) {
 }
 
 TEST_F(SceneCommand, RendersPathsAndTwoEyes) {
-  ASSERT_EQ(build_grid({"--quiet"}).exit_code, 0);
+  succeeds(build_grid({"--quiet"}));
   write_file(folder_ / "path.toml",
              "[[view]]\nframe = 0\nat = [0.0, 0.0]\n[[view]]\nframe = 4\nat = [0.8, 0.4]\n"
              "[[view]]\nframe = 6\nat = [0.8, 0.0]\n");
-  const ProcessResult path = view({"--path", folder_ / "path.toml", "-o", folder_ / "p%d.png",
-                                   "--source-mask", folder_ / "s%d.png"});
-  ASSERT_EQ(path.exit_code, 0) << path.err;
+  const ProcessResult path =
+      succeeds(view({"--path", folder_ / "path.toml", "-o", folder_ / "p%d.png", "--source-mask",
+                     folder_ / "s%d.png"}));
   EXPECT_THAT(path.err, HasSubstr("7 views"));
-  ASSERT_EQ(view({"--at", "0.6,0.3", "-o", folder_ / "one.png"}).exit_code, 0);
+  succeeds(view({"--at", "0.6,0.3", "-o", folder_ / "one.png"}));
   EXPECT_EQ(read_file(folder_ / "one.png"), read_file(folder_ / "p3.png"));
   EXPECT_FALSE(fs::exists(folder_ / "p7.png"));
   EXPECT_TRUE(fs::exists(folder_ / "s6.png"));
 
   // The eyes of one view are in two triangles; distances count lengths of the shortest edge.
   const ProcessResult eyes =
-      view({"--at", "0.5,0.2", "--stereo-packing", "sbsl", "--eye-separation", "0.4", "-o",
-            folder_ / "eyes.png", "--report", folder_ / "eyes.json"});
-  ASSERT_EQ(eyes.exit_code, 0) << eyes.err;
+      succeeds(view({"--at", "0.5,0.2", "--stereo-packing", "sbsl", "--eye-separation", "0.4", "-o",
+                     folder_ / "eyes.png", "--report", folder_ / "eyes.json"}));
   EXPECT_THAT(eyes.err, HasSubstr("212x74 pixels, 1 view "));
-  ASSERT_EQ(view({"--at", "0.4,0.2", "-o", folder_ / "left.png"}).exit_code, 0);
+  succeeds(view({"--at", "0.4,0.2", "-o", folder_ / "left.png"}));
   const Photograph both = read_photograph(folder_ / "eyes.png");
   const Photograph left = read_photograph(folder_ / "left.png");
   for (int y = 0; y < 74; ++y) {
@@ -186,13 +154,11 @@ TEST_F(SceneCommand, RendersPathsAndTwoEyes) {
 }
 
 TEST_F(SceneCommand, ViewsDoNotDependOnThreads) {
-  ASSERT_EQ(build_grid({"--quiet"}).exit_code, 0);
+  succeeds(build_grid({"--quiet"}));
   std::string expected;
   for (const char* threads : {"1", "2", "5"}) {
-    ASSERT_EQ(view({"--sweep=-0.1,0.2:1.1,0.4:9", "--threads", threads, "-o", folder_ / "m.mp4",
-                    "--hole-mask", folder_ / "h%d.png"})
-                  .exit_code,
-              0);
+    succeeds(view({"--sweep=-0.1,0.2:1.1,0.4:9", "--threads", threads, "-o", folder_ / "m.mp4",
+                   "--hole-mask", folder_ / "h%d.png"}));
     const std::string made = read_file(folder_ / "m.mp4") + read_file(folder_ / "h8.png");
     EXPECT_EQ(made, expected.empty() ? made : expected) << threads;
     expected = made;
@@ -200,12 +166,12 @@ TEST_F(SceneCommand, ViewsDoNotDependOnThreads) {
 }
 
 TEST_F(SceneCommand, AFolderWithCopiesCanBeMovedAlone) {
-  ASSERT_EQ(build_grid({"--copy-images"}).exit_code, 0);
-  ASSERT_EQ(view({"--at", "0.3,0.2", "-o", folder_ / "before.png"}).exit_code, 0);
+  succeeds(build_grid({"--copy-images"}));
+  succeeds(view({"--at", "0.3,0.2", "-o", folder_ / "before.png"}));
   fs::remove_all(images_);
   fs::rename(place_, folder_ / "moved");
   place_ = folder_ / "moved";
-  ASSERT_EQ(view({"--at", "0.3,0.2", "-o", folder_ / "after.png"}).exit_code, 0);
+  succeeds(view({"--at", "0.3,0.2", "-o", folder_ / "after.png"}));
   EXPECT_EQ(read_file(folder_ / "after.png"), read_file(folder_ / "before.png"));
 }
 
@@ -219,7 +185,7 @@ TEST_F(SceneCommand, AKilledBuildGoesOnWhereItStopped) {
     }
     return files;
   };
-  ASSERT_EQ(build_grid().exit_code, 0);
+  succeeds(build_grid());
   const auto complete = contents();
   for (const int signal : {SIGKILL, SIGINT}) {
     fs::remove_all(place_);
@@ -236,32 +202,28 @@ TEST_F(SceneCommand, AKilledBuildGoesOnWhereItStopped) {
       EXPECT_EQ(ended.exit_code, 130);
       EXPECT_THAT(ended.err, HasSubstr("run the same command to continue"));
     }
-    EXPECT_EQ(build_grid().exit_code, 0);
+    succeeds(build_grid());
     EXPECT_EQ(contents(), complete) << signal;
   }
 }
 
 TEST_F(SceneCommand, SaysWhichImagesHaveGone) {
-  ASSERT_EQ(build_grid().exit_code, 0);
+  succeeds(build_grid());
   fs::rename(images_, folder_ / "elsewhere");
   const ProcessResult lost = view({"--at", "0.3,0.2", "-o", folder_ / "v.png"});
-  EXPECT_EQ(lost.exit_code, 1);
-  EXPECT_TRUE(is_one_line(lost, "scene view"));
+  expect_one_line(lost, 1, "scene view");
   EXPECT_THAT(lost.err, AllOf(HasSubstr("images/0.png is missing"), HasSubstr("--copy-images")));
   EXPECT_FALSE(fs::exists(folder_ / "v.png"));
   images_ = folder_ / "elsewhere";
   EXPECT_THAT(build_grid().err, HasSubstr("0 of them matched now"));
-  EXPECT_EQ(view({"--at", "0.3,0.2", "-o", folder_ / "v.png"}).exit_code, 0);
+  succeeds(view({"--at", "0.3,0.2", "-o", folder_ / "v.png"}));
 }
 
 using InputSceneCommand = SceneCommand;
 
 TEST_F(InputSceneCommand, AnImageThatCannotBeReadStopsTheBuildBeforeItBegins) {
   write_file(images_ + "/3.png", read_file(images_ + "/3.png").substr(0, 900));
-  const ProcessResult built = build_grid();
-  EXPECT_EQ(built.exit_code, 1);
-  EXPECT_TRUE(is_one_line(built, "scene build"));
-  EXPECT_THAT(built.err, HasSubstr("3.png"));
+  expect_one_line(build_grid(), 1, "scene build", "3.png");
   EXPECT_FALSE(fs::exists(place_ + "/scene.json"));
 }
 
@@ -277,21 +239,17 @@ TEST_F(SceneCommand, WarnsOfEdgesThatDoNotCorrespond) {
     write_photograph(folder_ / std::to_string(i) + ".png", scene.render(places[i], 0).image);
   }
   write_file(folder_ / "list.csv", "0.png,0,0\n1.png,1,0\n2.png,0,1\n3.png,1,1\n");
-  const auto build_with = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"--positions", folder_ / "list.csv"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
+  const auto build_with = [&](const Words& more) {
     fs::remove_all(place_);
-    return build(arguments);
+    return build(joined({"--positions", folder_ / "list.csv"}, more));
   };
-  const ProcessResult built = build_with({"--report", folder_ / "report.json"});
-  EXPECT_EQ(built.exit_code, 0);
-  EXPECT_THAT(built.err,
-              AllOf(HasSubstr("warning: edge 2-3 (2.png, 3.png): rows are off by"),
-                    testing::Not(HasSubstr("edge 0-1")), testing::Not(HasSubstr("exchanged"))));
+  const ProcessResult built = succeeds(build_with({"--report", folder_ / "report.json"}));
+  EXPECT_THAT(built.err, AllOf(HasSubstr("warning: edge 2-3 (2.png, 3.png): rows are off by"),
+                               Not(HasSubstr("edge 0-1")), Not(HasSubstr("exchanged"))));
   const nlohmann::json edges = json_in(folder_ / "report.json").at("results").at("edges_matched");
   EXPECT_EQ(edges.at(0).at("rectification").at("is_rectified"), true);
   EXPECT_EQ(edges.at(3).at("rectification").at("is_rectified"), false);
-  EXPECT_THAT(build_with({"--no-rectification-check"}).err, testing::Not(HasSubstr("warning")));
+  EXPECT_THAT(build_with({"--no-rectification-check"}).err, Not(HasSubstr("warning")));
   EXPECT_THAT(build_with({"--quiet"}).err, IsEmpty());
 
   write_file(folder_ / "list.csv", "1.png,0,0\n0.png,1,0\n");
@@ -304,10 +262,9 @@ TEST_F(SceneCommand, RefusesHandHeldCamerasUnlessForced) {
   write_photograph(folder_ / "a.png", pair.left);
   write_photograph(folder_ / "b.png", pair.right);
   write_file(folder_ / "list.csv", "a.png,0,0\nb.png,1,0\n");
-  const std::vector<std::string> turned = {"--positions", folder_ / "list.csv"};
+  const Words turned = {"--positions", folder_ / "list.csv"};
   const ProcessResult refused = build(turned);
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_TRUE(is_one_line(refused, "scene build")) << refused.err;
+  expect_one_line(refused, 1, "scene build");
   EXPECT_THAT(refused.err,
               AllOf(HasSubstr("a.png and "),
                     HasSubstr("b.png: not a rectified pair: rows are off "
@@ -317,26 +274,22 @@ TEST_F(SceneCommand, RefusesHandHeldCamerasUnlessForced) {
   EXPECT_TRUE(fs::is_empty(place_ + "/maps"));
   EXPECT_THAT(view({"--at", "0.5,0", "-o", folder_ / "v.png"}).err,
               HasSubstr("1 of 1 edges are not matched yet"));
-  std::vector<std::string> forced = turned;
+  Words forced = turned;
   forced.emplace_back("--no-rectification-check");
-  EXPECT_EQ(build(forced).exit_code, 0);
+  succeeds(build(forced));
 
   // What the message suggests.
   fs::remove_all(place_);
-  ASSERT_EQ(
-      run_vantage({"rectify", folder_ / "a.png", folder_ / "b.png", "-o", folder_ / "rectified"})
-          .exit_code,
-      0);
-  const ProcessResult repaired = build({"--images", folder_ / "rectified/*.png"});
-  EXPECT_EQ(repaired.exit_code, 0) << repaired.err;
+  succeeds(
+      run_vantage({"rectify", folder_ / "a.png", folder_ / "b.png", "-o", folder_ / "rectified"}));
+  succeeds(build({"--images", folder_ / "rectified/*.png"}));
 }
 
 TEST_F(SceneCommand, RefusesImagesOfWhichLittleMatches) {
   const ProcessResult refused =
       run_vantage({"scene", "build", "--images", images_ + "/[01].png", "-o", place_,
                    "--disparities=40:60", "--preset", "fast"});
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_TRUE(is_one_line(refused, "scene build")) << refused.err;
+  expect_one_line(refused, 1, "scene build");
   EXPECT_THAT(refused.err, AllOf(HasSubstr("1.png: "),
                                  HasSubstr("% of the pixels match, expected at least 30 %"),
                                  HasSubstr("--disparities (40:60 was searched)")));
@@ -346,9 +299,8 @@ TEST_F(SceneCommand, RefusesImagesOfWhichLittleMatches) {
 TEST_F(SceneCommand, CamerasNeedNoRowsOrColumns) {
   write_photograph(images_ + "/middle.png", truth_at(0.3, 0.35));
   write_file(images_ + "/list.csv", "0.png,0,0\n2.png,1,0\n3.png,0,0.5\nmiddle.png,0.3,0.35\n");
-  const ProcessResult built = build({"--positions", images_ + "/list.csv"});
-  ASSERT_EQ(built.exit_code, 0) << built.err;
-  ASSERT_EQ(view({"--at", "0.25,0.2", "-o", folder_ / "v.png"}).exit_code, 0);
+  succeeds(build({"--positions", images_ + "/list.csv"}));
+  succeeds(view({"--at", "0.25,0.2", "-o", folder_ / "v.png"}));
   EXPECT_GE(psnr(folder_ / "v.png", 0.25, 0.2), 28);
   EXPECT_THAT(run_vantage({"scene", "info", place_}).out, HasSubstr("slope"));
 }
@@ -356,9 +308,7 @@ TEST_F(SceneCommand, CamerasNeedNoRowsOrColumns) {
 TEST_F(InputSceneCommand, RefusesWrongUsage) {
   const auto refused = [&](const ProcessResult& result, int exit_code, const std::string& command,
                            const std::string& text) {
-    EXPECT_EQ(result.exit_code, exit_code) << result.err;
-    EXPECT_TRUE(is_one_line(result, command));
-    EXPECT_THAT(result.err, HasSubstr(text));
+    expect_one_line(result, exit_code, command, text);
   };
   refused(build({}), 2, "scene build", "expected --images or --positions");
   refused(build({"--images", images_, "--positions", "p.csv"}), 2, "scene build", "both given");
@@ -381,7 +331,7 @@ TEST_F(InputSceneCommand, RefusesWrongUsage) {
   refused(run_vantage({"scene", "info", place_}), 1, "scene info", "no scene");
   EXPECT_EQ(run_vantage({"scene"}).exit_code, 2);
 
-  ASSERT_EQ(build({"--images", images_ + "/[01].png"}).exit_code, 0);
+  succeeds(build({"--images", images_ + "/[01].png"}));
   refused(view({"-o", folder_ / "v.png"}), 2, "scene view",
           "expected one of --at, --sweep and --path");
   refused(view({"--at", "0", "-o", folder_ / "v.png"}), 2, "scene view", "a position X,Y");
@@ -408,5 +358,4 @@ TEST_F(InputSceneCommand, RefusesWrongUsage) {
           "expected positions at = [X, Y] among the images");
 }
 
-}  // namespace command_scene_test
-}  // namespace vantage
+}  // namespace vantage::command_scene_test

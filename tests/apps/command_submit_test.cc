@@ -1,21 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
-#include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace command_submit_test {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::IsSupersetOf;
-using testing::Not;
+namespace vantage::command_submit_test {
 
 constexpr int kFrames = 6;
 
@@ -37,12 +26,12 @@ class SubmitCommand : public testing::Test {
       options.seed = static_cast<std::uint64_t>(frame + 1);
       const BookPair pair = make_book_pair(options);
       const std::string name = "/frame" + std::to_string(frame) + ".png";
-      std::filesystem::create_directories(left_);
-      std::filesystem::create_directories(right_);
+      fs::create_directories(left_);
+      fs::create_directories(right_);
       write_photograph(left_ + name, pair.left);
       write_photograph(right_ + name, pair.right);
     }
-    std::filesystem::create_directory(programs_);
+    fs::create_directory(programs_);
     ::setenv("PATH", (programs_ + ":" + path_).c_str(), 1);
     add_program("sbatch", "echo 4$(wc -l <" + calls_ + ")");
     add_program("squeue", "exit 1");
@@ -55,17 +44,16 @@ class SubmitCommand : public testing::Test {
   void add_program(const std::string& name, const std::string& body) const {
     const std::string file = programs_ + "/" + name;
     write_file(file, "#!/bin/bash\necho \"" + name + " $*\" >>" + calls_ + "\n" + body + "\n");
-    std::filesystem::permissions(file, std::filesystem::perms::owner_all);
+    fs::permissions(file, fs::perms::owner_all);
   }
   [[nodiscard]] std::string calls() const { return read_file(calls_); }
 
-  [[nodiscard]] std::vector<std::string> run_options(const std::string& out) const {
+  [[nodiscard]] Words run_options(const std::string& out) const {
     return {"--left",         left_, "--right", right_, "-o", out, "--disparities=0:9",
             "--chunk-frames", "2"};
   }
-  [[nodiscard]] ProcessResult submit(const std::string& out,
-                                     const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = run_options(out);
+  [[nodiscard]] ProcessResult submit(const std::string& out, const Words& more = {}) const {
+    Words arguments = run_options(out);
     arguments.insert(arguments.begin(), {"submit", "--engine", "slurm", "--shards", "3"});
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_vantage(arguments);
@@ -106,19 +94,19 @@ class SubmitCommand : public testing::Test {
 };
 
 TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
-  const std::filesystem::path start = std::filesystem::current_path();
-  std::filesystem::current_path(folder_.path());
-  const ProcessResult result =
-      run_vantage({"submit", "--left", "left", "--right", "right/*.png", "-o", "out", "--shards",
-                   "1", "--no-submit", "--mu", "0.3", "--keep-going", "--disparities=0:9"});
-  std::filesystem::current_path(start);
+  const fs::path start = fs::current_path();
+  fs::current_path(folder_.path());
+  const ProcessResult result = run_vantage(
+      words("submit --left left --right right/*.png -o out --shards 1 --no-submit --mu 0.3 "
+            "--keep-going --disparities=0:9"));
+  fs::current_path(start);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const std::string out = folder_ / "out";
   EXPECT_THAT(files_below(out),
               ElementsAre(".vantage/slurm/array.sh", ".vantage/slurm/job.toml",
                           ".vantage/slurm/merge.sh", ".vantage/slurm/submit.toml"));
-  const ProcessResult of_file = run_vantage({"run", slurm(out, "job.toml"), "--print-config"});
-  EXPECT_EQ(of_file.exit_code, 0) << of_file.err;
+  const ProcessResult of_file =
+      succeeds(run_vantage({"run", slurm(out, "job.toml"), "--print-config"}));
   EXPECT_EQ(of_file.out,
             run_vantage({"run", "--left", left_, "--right", right_ + "/*.png", "-o", out, "--mu",
                          "0.3", "--keep-going", "--disparities=0:9", "--print-config"})
@@ -132,27 +120,26 @@ TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
 TEST_F(SubmitCommand, FewFramesAreDividedAmongAllTasks) {
   const std::string out = folder_ / "out";
   const ProcessResult result =
-      run_vantage({"submit", "--engine", "slurm", "--shards", "3", "--no-submit", "--left", left_,
-                   "--right", right_, "--disparities=0:9", "-o", out});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+      succeeds(run_vantage({"submit", "--engine", "slurm", "--shards", "3", "--no-submit", "--left",
+                            left_, "--right", right_, "--disparities=0:9", "-o", out}));
   EXPECT_THAT(result.err, HasSubstr("--chunk-frames is "));
   for (const char* file : {"job.toml", "submit.toml"}) {
-    EXPECT_THAT(read_file(slurm(out, file)), testing::Not(HasSubstr("chunk-frames = 50")));
+    EXPECT_THAT(read_file(slurm(out, file)), Not(HasSubstr("chunk-frames = 50")));
   }
 }
 
 TEST_F(SubmitCommand, OptionsBecomeDirectives) {
   const std::string out = folder_ / "an 'odd' 50% folder";
-  const ProcessResult result = submit(
-      out, {"--no-submit", "--partition", "long", "--account", "film", "--time", "1-12", "--cpus",
-            "16", "--slurm-memory", "8G", "--concurrent", "2", "--sbatch-option", "--qos=low",
-            "--sbatch-option", "--constraint=avx2", "--program", "/opt/vantage"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(submit(
+      out,
+      words("--no-submit --partition long --account film --time 1-12 --cpus 16 --slurm-memory 8G "
+            "--concurrent 2 --sbatch-option --qos=low --sbatch-option --constraint=avx2 --program "
+            "/opt/vantage")));
   const std::string array = read_file(slurm(out, "array.sh"));
-  for (const std::string directive :
-       {"--array=1-3%2", "--partition=long", "--account=film", "--time=1-12", "--cpus-per-task=16",
-        "--mem=8G", "--qos=low", "--constraint=avx2", "--signal=B:USR1@120", "--requeue",
-        "--open-mode=append"}) {
+  for (const std::string& directive :
+       words("--array=1-3%2 --partition=long --account=film --time=1-12 --cpus-per-task=16 "
+             "--mem=8G --qos=low --constraint=avx2 --signal=B:USR1@120 --requeue "
+             "--open-mode=append")) {
     EXPECT_THAT(array, HasSubstr("\n#SBATCH " + directive + "\n"));
   }
   EXPECT_THAT(array, HasSubstr("an 'odd' 50%% folder/.vantage/slurm/task-%a.log\"\n"));
@@ -165,7 +152,7 @@ TEST_F(SubmitCommand, OptionsBecomeDirectives) {
                   folder_ / "log"),
             0);
   // A short time limit leaves less time to finish; --threads are processors unless told otherwise.
-  ASSERT_EQ(submit(out, {"--no-submit", "--time", "4", "--threads", "3"}).exit_code, 0);
+  succeeds(submit(out, {"--no-submit", "--time", "4", "--threads", "3"}));
   EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("--signal=B:USR1@60\n"));
   EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("--cpus-per-task=3\n"));
   EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("\nthreads=()\n"));
@@ -173,12 +160,11 @@ TEST_F(SubmitCommand, OptionsBecomeDirectives) {
 
 TEST_F(SubmitCommand, SubmitsTheArrayAndTheMergeAfterIt) {
   const std::string out = folder_ / "out";
-  const ProcessResult result = submit(out);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = succeeds(submit(out));
   EXPECT_EQ(calls(), "sbatch --parsable " + slurm(out, "array.sh") +
                          "\nsbatch --parsable --dependency=afterok:41 --kill-on-invalid-dep=yes " +
                          slurm(out, "merge.sh") + "\n");
-  const auto jobs = nlohmann::json::parse(read_file(slurm(out, "submitted.json")));
+  const auto jobs = read_json(slurm(out, "submitted.json"));
   EXPECT_EQ(jobs, (nlohmann::json{{"array_job", "41"}, {"merge_job", "42"}}));
   for (const std::string says :
        {"squeue --array --jobs=41,42", "scancel 41 42", "*.log", "vantage submit --config"}) {
@@ -188,45 +174,34 @@ TEST_F(SubmitCommand, SubmitsTheArrayAndTheMergeAfterIt) {
   EXPECT_THAT(read_file(slurm(out, "job.toml")), HasSubstr("quiet = false"));
 
   add_program("squeue", "echo running");
-  const ProcessResult again = submit(out);
-  EXPECT_EQ(again.exit_code, 1);
-  EXPECT_TRUE(is_one_line(again, "submit"));
-  EXPECT_THAT(again.err, HasSubstr("still in the queue"));
+  expect_one_line(submit(out), 1, "submit", "still in the queue");
 }
 
 TEST_F(SubmitCommand, WhatSlurmRefusesIsOneLine) {
   const std::string out = folder_ / "out";
   add_program("sbatch", "echo 'sbatch: error: no such thing' >&2; echo 'really' >&2; exit 1");
-  const ProcessResult first = submit(out);
-  EXPECT_EQ(first.exit_code, 1);
-  EXPECT_TRUE(is_one_line(first, "submit"));
-  EXPECT_THAT(first.err, HasSubstr("no such thing really"));
+  expect_one_line(submit(out), 1, "submit", "no such thing really");
   EXPECT_THAT(calls(), Not(HasSubstr("scancel")));
 
   // An array without its merge must not stay.
   add_program("sbatch", "[[ $* == *array.sh ]] && echo '41;cluster' || exit 1");
-  const ProcessResult second = submit(out);
-  EXPECT_EQ(second.exit_code, 1);
-  EXPECT_TRUE(is_one_line(second, "submit"));
+  expect_one_line(submit(out), 1, "submit");
   EXPECT_THAT(calls(), HasSubstr("afterok:41 "));
   EXPECT_THAT(calls(), HasSubstr("scancel 41"));
-  EXPECT_FALSE(std::filesystem::exists(slurm(out, "submitted.json")));
+  EXPECT_FALSE(fs::exists(slurm(out, "submitted.json")));
 
   add_program("sbatch", "echo 'good morning'");
   EXPECT_THAT(submit(out).err, HasSubstr("expected a job number"));
 
   ::setenv("PATH", (folder_ / "nothing").c_str(), 1);
-  const ProcessResult missing = submit(folder_ / "other");
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_TRUE(is_one_line(missing, "submit"));
-  EXPECT_THAT(missing.err, HasSubstr("sbatch is not in the PATH"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "other"));
+  expect_one_line(submit(folder_ / "other"), 1, "submit", "sbatch is not in the PATH");
+  EXPECT_FALSE(fs::exists(folder_ / "other"));
 }
 
 using InputSubmitCommand = SubmitCommand;
 
 TEST_F(InputSubmitCommand, WrongUsageIsOneLineAndExit2) {
-  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+  const std::vector<Refusal> refusals = {
       {{"--shard", "1/3"}, "--shard cannot be submitted"},
       {{"--dry-run"}, "--dry-run cannot be submitted"},
       {{"--report", "r.json"}, "--report cannot be submitted"},
@@ -247,39 +222,28 @@ TEST_F(InputSubmitCommand, WrongUsageIsOneLineAndExit2) {
       {{"--window", "4"}, "window is 4"},
       {{"--left", right_}, "--left is given 2 times"}};
   const std::string out = folder_ / "out";
-  SCOPED_TRACE(test::sample_name());
-  for (const auto& [more, says] :
-       sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
-    const ProcessResult result = submit(out, more);
-    EXPECT_EQ(result.exit_code, 2) << says << result.err;
-    EXPECT_TRUE(is_one_line(result, "submit"));
-    EXPECT_THAT(result.err, HasSubstr(says));
-  }
+  expect_refusals("submit", folder_.path(), refusals,
+                  [&](const Words& words) { return submit(out, words); });
   const ProcessResult undivided =
       run_vantage({"submit", "--engine", "slurm", "--left", left_, "--right", right_, "-o", out});
   EXPECT_EQ(undivided.exit_code, 2);
   EXPECT_EQ(undivided.err, "vantage submit: --shards is missing, expected --shards N\n");
-  EXPECT_FALSE(std::filesystem::exists(out));
+  EXPECT_FALSE(fs::exists(out));
   EXPECT_EQ(submit(folder_ / "a\"b").exit_code, 2);
   EXPECT_EQ(calls(), "");
 
   write_file(folder_ / "file", "not a folder");
-  const ProcessResult result = submit(folder_ / "file");
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "submit"));
+  expect_one_line(submit(folder_ / "file"), 1, "submit");
 }
 
 TEST_F(SubmitCommand, TheFolderOfAnotherRunIsRefused) {
   const std::string out = folder_ / "out";
-  std::vector<std::string> run = run_options(out);
+  Words run = run_options(out);
   run.insert(run.begin(), {"run", "--quiet"});
-  ASSERT_EQ(run_vantage(run).exit_code, 0);
-  EXPECT_EQ(submit(out).exit_code, 0);
-  const ProcessResult other = submit(out, {"--iterations", "2"});
-  EXPECT_EQ(other.exit_code, 1);
-  EXPECT_TRUE(is_one_line(other, "submit"));
-  EXPECT_THAT(other.err, HasSubstr("iterations"));
-  EXPECT_EQ(submit(out, {"--iterations", "2", "--overwrite"}).exit_code, 0);
+  succeeds(run_vantage(run));
+  succeeds(submit(out));
+  expect_one_line(submit(out, {"--iterations", "2"}), 1, "submit", "iterations");
+  succeeds(submit(out, {"--iterations", "2", "--overwrite"}));
   // Only the submission begins anew, not its tasks nor its repetition.
   EXPECT_THAT(read_file(slurm(out, "job.toml")), HasSubstr("overwrite = false"));
   EXPECT_THAT(read_file(slurm(out, "submit.toml")), HasSubstr("overwrite = false"));
@@ -288,10 +252,10 @@ TEST_F(SubmitCommand, TheFolderOfAnotherRunIsRefused) {
 TEST_F(SubmitCommand, TasksMakeTheShardsOfTheRun) {
   const std::string out = folder_ / "out";
   const std::string whole = folder_ / "whole";
-  std::vector<std::string> run = run_options(whole);
+  Words run = run_options(whole);
   run.insert(run.begin(), {"run", "--quiet"});
-  ASSERT_EQ(run_vantage(run).exit_code, 0);
-  ASSERT_EQ(submit(out).exit_code, 0);
+  succeeds(run_vantage(run));
+  succeeds(submit(out));
   for (const std::string task : {"3", "1", "2"}) {
     EXPECT_EQ(shell("SLURM_ARRAY_JOB_ID=41 SLURM_ARRAY_TASK_ID=" + task + " bash '" +
                         slurm(out, "array.sh") + "'",
@@ -311,7 +275,7 @@ TEST_F(SubmitCommand, TasksMakeTheShardsOfTheRun) {
 
 TEST_F(SubmitCommand, ATaskEndsAsItsRunDoes) {
   const std::string out = folder_ / "out";
-  ASSERT_EQ(submit(out, {"--program", programs_ + "/vantage", "--frames", "0-5"}).exit_code, 0);
+  succeeds(submit(out, {"--program", programs_ + "/vantage", "--frames", "0-5"}));
   add_program("vantage", "exit 0");
   EXPECT_EQ(run_task(out), 0);
   EXPECT_THAT(calls(), HasSubstr("vantage run " + slurm(out, "job.toml") +
@@ -327,32 +291,32 @@ TEST_F(SubmitCommand, ATaskEndsAsItsRunDoes) {
 
 TEST_F(SubmitCommand, AFailedTaskIsTriedAgainAndThenGivenUp) {
   const std::string out = folder_ / "out";
-  ASSERT_EQ(submit(out, {"--program", programs_ + "/vantage", "--retries", "1"}).exit_code, 0);
+  succeeds(submit(out, {"--program", programs_ + "/vantage", "--retries", "1"}));
   add_program("vantage", "kill -SEGV $$");
   EXPECT_EQ(run_task(out), 0);
   EXPECT_THAT(calls(), HasSubstr("scontrol requeue 41_2\n"));
   EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("exit code 139, is tried again"));
-  std::filesystem::remove(calls_);
+  fs::remove(calls_);
   EXPECT_EQ(run_task(out), 139);
   EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
   EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("given up after 2 attempts"));
 
   // A later submission starts counting anew; Slurm may refuse, though.
   add_program("scontrol", "exit 1");
-  std::filesystem::remove(slurm(out, "failures-41_2"));
+  fs::remove(slurm(out, "failures-41_2"));
   EXPECT_EQ(run_task(out), 1);
   EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("cannot be put back"));
 }
 
 TEST_F(SubmitCommand, ATaskContinuesAfterItsTimeLimitIfItGotAnythingDone) {
   const std::string out = folder_ / "out";
-  ASSERT_EQ(submit(out, {"--program", programs_ + "/vantage", "--retries", "0"}).exit_code, 0);
+  succeeds(submit(out, {"--program", programs_ + "/vantage", "--retries", "0"}));
   const std::string frames = out + "/.vantage/frames-2-of-3.jsonl";
   add_patient_vantage(frames);
   EXPECT_EQ(run_task(out, send_when_ready("USR1")), 0);
   EXPECT_THAT(calls(), HasSubstr("scontrol requeue 41_2\n"));
-  std::filesystem::remove(calls_);
-  std::filesystem::remove(folder_ / "ready");
+  fs::remove(calls_);
+  fs::remove(folder_ / "ready");
   add_patient_vantage("/dev/null");
   EXPECT_EQ(run_task(out, send_when_ready("USR1")), 130);
   EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
@@ -361,10 +325,8 @@ TEST_F(SubmitCommand, ATaskContinuesAfterItsTimeLimitIfItGotAnythingDone) {
 
 TEST_F(SubmitCommand, FramesThatDoNotEndInTimeAreGivenUp) {
   const std::string out = folder_ / "out";
-  ASSERT_EQ(
-      submit(out, {"--program", programs_ + "/vantage", "--drain-time", "1", "--frames", "0-5"})
-          .exit_code,
-      0);
+  succeeds(
+      submit(out, {"--program", programs_ + "/vantage", "--drain-time", "1", "--frames", "0-5"}));
   add_patient_vantage(out + "/.vantage/frames-frames-0-5-2-of-3.jsonl", true);
   EXPECT_EQ(run_task(out, send_when_ready("USR1")), 0);
   EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("goes on in a new job"));
@@ -373,12 +335,11 @@ TEST_F(SubmitCommand, FramesThatDoNotEndInTimeAreGivenUp) {
 
 TEST_F(SubmitCommand, ACancelledTaskStaysCancelled) {
   const std::string out = folder_ / "out";
-  ASSERT_EQ(submit(out, {"--program", programs_ + "/vantage"}).exit_code, 0);
+  succeeds(submit(out, {"--program", programs_ + "/vantage"}));
   add_patient_vantage("/dev/null");
   EXPECT_EQ(run_task(out, send_when_ready("TERM")), 130);
   EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
   EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("stopped by Slurm"));
 }
 
-}  // namespace command_submit_test
-}  // namespace vantage
+}  // namespace vantage::command_submit_test

@@ -1,23 +1,13 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <variant>
 
 #include "engine/image/stereo_packing.h"
 #include "engine/io/video/video_io.h"
-#include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
 #include "tests/engine/io_test_support.h"
 
-namespace vantage {
-namespace command_synth_test {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::command_synth_test {
 
 class SynthCommand : public PairTest {
  protected:
@@ -25,15 +15,13 @@ class SynthCommand : public PairTest {
     write_disparity(left_map_, pair_.left_disparity.view());
     write_disparity(right_map_, pair_.right_disparity.view());
     outputs_ = folder_ / "out";
-    std::filesystem::create_directory(outputs_);
+    fs::create_directory(outputs_);
   }
 
-  [[nodiscard]] ProcessResult synth(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"synth", left_, right_, "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult synth(const Words& more) const {
+    return run_vantage(joined({"synth", left_, right_, "--quiet"}, more));
   }
-  [[nodiscard]] ProcessResult synth_from_maps(std::vector<std::string> more) const {
+  [[nodiscard]] ProcessResult synth_from_maps(Words more) const {
     more.insert(more.end(), {"--left-disparity", left_map_, "--right-disparity", right_map_});
     return synth(more);
   }
@@ -54,23 +42,19 @@ TEST_F(SynthCommand, TheViewAtACameraIsItsImage) {
   DisparityMap left_map = pair_.left_disparity.copy();
   left_map.at(20, 30) = std::numeric_limits<float>::quiet_NaN();
   write_disparity(left_map_, left_map.view());
-  const ProcessResult result =
-      synth_from_maps({"-o", outputs_ + "/v%01d.png", "--view", "0", "--view", "1"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(synth_from_maps({"-o", outputs_ + "/v%01d.png", "--view", "0", "--view", "1"}));
   EXPECT_TRUE(test::same(read_photograph(outputs_ + "/v0.png"), pair_.left));
   EXPECT_TRUE(test::same(read_photograph(outputs_ + "/v1.png"), pair_.right));
 }
 
 TEST_F(SynthCommand, SeveralViewsNeedAPattern) {
-  const std::vector<std::string> views = {"--view", "0.25", "--view", "-0.5", "--view=0.75,0"};
-  auto arguments = views;
-  arguments.insert(arguments.end(), {"-o", outputs_ + "/v%02d.png", "--hole-mask",
-                                     outputs_ + "/m%d.png", "--report", folder_ / "r.json"});
-  const ProcessResult result = synth_from_maps(arguments);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Words views = {"--view", "0.25", "--view", "-0.5", "--view=0.75,0"};
+  Words arguments = joined(views, {"-o", outputs_ + "/v%02d.png", "--hole-mask",
+                                   outputs_ + "/m%d.png", "--report", folder_ / "r.json"});
+  succeeds(synth_from_maps(arguments));
   EXPECT_THAT(files_below(outputs_),
               ElementsAre("m0.png", "m1.png", "m2.png", "v00.png", "v01.png", "v02.png"));
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["results"]["views"].size(), 3U);
   EXPECT_EQ(report["results"]["views"][1]["view_x"], -0.5);
   EXPECT_EQ(report["results"]["views"][1]["view_y"], 0);
@@ -80,25 +64,20 @@ TEST_F(SynthCommand, SeveralViewsNeedAPattern) {
 
   arguments = views;
   arguments.insert(arguments.end(), {"-o", outputs_ + "/plain.png"});
-  const ProcessResult plain = synth_from_maps(arguments);
-  EXPECT_EQ(plain.exit_code, 2);
-  EXPECT_TRUE(is_one_line(plain, "synth"));
-  EXPECT_THAT(plain.err, HasSubstr("expected a pattern such as views/%03d.png"));
+  expect_one_line(synth_from_maps(arguments), 2, "synth",
+                  "expected a pattern such as views/%03d.png");
 }
 
 TEST_F(SynthCommand, MatchesThePairWithoutMaps) {
-  const ProcessResult result = synth({"-o", outputs_ + "/v.png", "--view", "0.5", "--disparities",
-                                      "0:9", "--method", "ssd", "--report", folder_ / "r.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  succeeds(synth({"-o", outputs_ + "/v.png", "--view", "0.5", "--disparities", "0:9", "--method",
+                  "ssd", "--report", folder_ / "r.json"}));
+  const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);
   EXPECT_TRUE(report["seconds"]["stages"].contains("views"));
 }
 
 TEST_F(SynthCommand, SweepsBecomeVideosAndEqualTheirViews) {
-  const ProcessResult video =
-      synth_from_maps({"-o", outputs_ + "/v.mp4", "--sweep", "-0.5:1:4", "--fps", "29.97"});
-  ASSERT_EQ(video.exit_code, 0) << video.err;
+  succeeds(synth_from_maps({"-o", outputs_ + "/v.mp4", "--sweep", "-0.5:1:4", "--fps", "29.97"}));
   VideoReader reader(outputs_ + "/v.mp4");
   Photograph frame;
   int frames = 0;
@@ -108,19 +87,16 @@ TEST_F(SynthCommand, SweepsBecomeVideosAndEqualTheirViews) {
   EXPECT_EQ(frames, 4);
   EXPECT_EQ(reader.frame_rate(), (FrameRate{30000, 1001}));
 
-  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/s%d.png", "--sweep", "-0.5:1:4"}).exit_code, 0);
-  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/half.png", "--view", "0.5"}).exit_code, 0);
+  succeeds(synth_from_maps({"-o", outputs_ + "/s%d.png", "--sweep", "-0.5:1:4"}));
+  succeeds(synth_from_maps({"-o", outputs_ + "/half.png", "--view", "0.5"}));
   EXPECT_EQ(read_file(outputs_ + "/s2.png"), read_file(outputs_ + "/half.png"));
   EXPECT_THAT(files_below(outputs_),
               ElementsAre("half.png", "s0.png", "s1.png", "s2.png", "s3.png", "v.mp4"));
 }
 
 TEST_F(SynthCommand, OptionsReachTheSynthesis) {
-  const auto view = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments = {"-o", outputs_ + "/v.png", "--view", "3"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const ProcessResult result = synth_from_maps(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto view = [&](const Words& options) {
+    succeeds(synth_from_maps(joined({"-o", outputs_ + "/v.png", "--view", "3"}, options)));
     return read_file(outputs_ + "/v.png");
   };
   const std::string mirrored = view({});
@@ -134,10 +110,9 @@ TEST_F(SynthCommand, OptionsReachTheSynthesis) {
 }
 
 TEST_F(SynthCommand, SourceMaskNamesTheImages) {
-  const ProcessResult result =
+  succeeds(
       synth_from_maps({"-o", outputs_ + "/v.png", "--view", "0.5", "--soft-edges", "off",
-                       "--hole-mask", outputs_ + "/h.png", "--source-mask", outputs_ + "/s.png"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+                       "--hole-mask", outputs_ + "/h.png", "--source-mask", outputs_ + "/s.png"}));
   const Photograph holes = read_photograph(outputs_ + "/h.png");
   const Photograph sources = read_photograph(outputs_ + "/s.png");
   int both = 0;
@@ -156,7 +131,7 @@ using InputSynthCommand = SynthCommand;
 
 TEST_F(InputSynthCommand, WrongUsageIsOneLineAndExit2) {
   const std::string out = outputs_ + "/v.png";
-  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+  const std::vector<Refusal> refusals = {
       {{"-o", out}, "no view is given"},
       {{"-o", out, "--view", "0.5,0.25,1"}, "--view is '0.5,0.25,1', expected a position XS or"},
       {{"-o", out, "--view", "middle"}, "--view is"},
@@ -185,15 +160,8 @@ TEST_F(InputSynthCommand, WrongUsageIsOneLineAndExit2) {
        "--window has no effect"},
       {{"-o", out, "--view", "0.5", "--gamma", "2"}, "gamma"},
       {{"-o", out, "--view", "0.5", "--gradient-limit", "-1"}, "gradient"}};
-  SCOPED_TRACE(test::sample_name());
-  for (const auto& [arguments, says] :
-       sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
-    const ProcessResult result = synth(arguments);
-    EXPECT_EQ(result.exit_code, 2) << says;
-    EXPECT_TRUE(is_one_line(result, "synth"));
-    EXPECT_THAT(result.err, HasSubstr(says));
-  }
-  EXPECT_THAT(files_below(outputs_), IsEmpty());
+  expect_refusals("synth", folder_.path(), refusals,
+                  [&](const Words& words) { return synth(words); });
 }
 
 TEST_F(SynthCommand, PosesOfAFileAreTheViewsTheyName) {
@@ -201,21 +169,20 @@ TEST_F(SynthCommand, PosesOfAFileAreTheViewsTheyName) {
   write_file(folder_ / "poses.json", R"({"view": [{"at": [0.25, 0]}, {"at": [0.5, -0.25]}]})");
   write_file(folder_ / "path.toml",
              "[[view]]\nframe = 0\nat = [0, 0]\n[[view]]\nframe = 2\nat = [0.5, 0]\n");
-  const std::vector<std::vector<std::string>> runs = {
+  const std::vector<Words> runs = {
       {"-o", outputs_ + "/t%d.png", "--pose", folder_ / "poses.toml"},
       {"-o", outputs_ + "/j%d.png", "--pose", folder_ / "poses.json"},
       {"-o", outputs_ + "/v%d.png", "--view", "0.25", "--view", "0.5,-0.25"},
       {"-o", outputs_ + "/p%d.png", "--path", folder_ / "path.toml"}};
   for (const auto& arguments : runs) {
-    const ProcessResult result = synth_from_maps(arguments);
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    succeeds(synth_from_maps(arguments));
   }
   for (const char* number : {"0.png", "1.png"}) {
     EXPECT_EQ(read_file(outputs_ + "/t" + number), read_file(outputs_ + "/v" + number));
     EXPECT_EQ(read_file(outputs_ + "/j" + number), read_file(outputs_ + "/v" + number));
   }
   EXPECT_EQ(read_file(outputs_ + "/p1.png"), read_file(outputs_ + "/v0.png"));
-  EXPECT_FALSE(std::filesystem::exists(outputs_ + "/p3.png"));
+  EXPECT_FALSE(fs::exists(outputs_ + "/p3.png"));
 }
 
 TEST_F(SynthCommand, CamerasAndTurnedViewsNeedACalibration) {
@@ -226,33 +193,22 @@ TEST_F(SynthCommand, CamerasAndTurnedViewsNeedACalibration) {
       folder_ / "camera.toml",
       "[[view]]\nK = [80, 0, 35, 0, 80, 26, 0, 0, 1]\nR = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n"
       "t = [-1, 0, 0]\n");
-  const std::vector<std::string> camera = {"-o", outputs_ + "/c.png", "--pose",
-                                           folder_ / "camera.toml"};
-  const ProcessResult refused = synth_from_maps(camera);
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("need calibrated cameras, expected --calibration"));
+  const Words camera = {"-o", outputs_ + "/c.png", "--pose", folder_ / "camera.toml"};
+  expect_failure(synth_from_maps(camera), 2, "need calibrated cameras, expected --calibration");
 
-  auto calibrated = camera;
-  calibrated.insert(calibrated.end(), {"--calibration", folder_ / "calib.txt"});
-  ASSERT_EQ(synth_from_maps(calibrated).exit_code, 0);
-  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/b.png", "--view", "0.5"}).exit_code, 0);
+  succeeds(synth_from_maps(joined(camera, {"--calibration", folder_ / "calib.txt"})));
+  succeeds(synth_from_maps({"-o", outputs_ + "/b.png", "--view", "0.5"}));
   EXPECT_EQ(read_file(outputs_ + "/c.png"), read_file(outputs_ + "/b.png"));
   // Straight ahead of the middle the camera need not turn.
-  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/l.png", "--view", "0.5", "--look-at", "4",
-                             "--calibration", folder_ / "calib.txt"})
-                .exit_code,
-            0);
+  succeeds(synth_from_maps({"-o", outputs_ + "/l.png", "--view", "0.5", "--look-at", "4",
+                            "--calibration", folder_ / "calib.txt"}));
   EXPECT_EQ(read_file(outputs_ + "/l.png"), read_file(outputs_ + "/b.png"));
-  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/t.png", "--view", "0.75", "--look-at", "4",
-                             "--calibration", folder_ / "calib.txt"})
-                .exit_code,
-            0);
+  succeeds(synth_from_maps({"-o", outputs_ + "/t.png", "--view", "0.75", "--look-at", "4",
+                            "--calibration", folder_ / "calib.txt"}));
   EXPECT_EQ(read_photograph(outputs_ + "/t.png").width(), 71);
   // The book's three steps instead of one.
-  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/f.png", "--view", "0.75", "--look-at", "4",
-                             "--calibration", folder_ / "calib.txt", "--warp", "forward"})
-                .exit_code,
-            0);
+  succeeds(synth_from_maps({"-o", outputs_ + "/f.png", "--view", "0.75", "--look-at", "4",
+                            "--calibration", folder_ / "calib.txt", "--warp", "forward"}));
   EXPECT_NE(read_file(outputs_ + "/f.png"), read_file(outputs_ + "/t.png"));
 }
 
@@ -267,11 +223,8 @@ TEST_F(InputSynthCommand, WhatIsWrongInAFileOfPosesIsNamed) {
       {"[[view]", "not TOML"}};
   for (const auto& [text, says] : files) {
     write_file(folder_ / "p.toml", text);
-    const ProcessResult result =
-        synth_from_maps({"-o", outputs_ + "/v.png", "--pose", folder_ / "p.toml"});
-    EXPECT_EQ(result.exit_code, 2) << text;
-    EXPECT_TRUE(is_one_line(result, "synth"));
-    EXPECT_THAT(result.err, HasSubstr(says));
+    expect_one_line(synth_from_maps({"-o", outputs_ + "/v.png", "--pose", folder_ / "p.toml"}), 2,
+                    "synth", says);
   }
   const ProcessResult path =
       synth_from_maps({"-o", outputs_ + "/v.mp4", "--path", folder_ / "absent.toml"});
@@ -293,7 +246,7 @@ TEST_F(InputSynthCommand, APoseThatCannotBeRenderedIsFoundFirst) {
   const std::string straight = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
   struct Case {
     std::string last;
-    std::vector<std::string> more;
+    Words more;
     std::string says;
   };
   const std::vector<Case> cases = {
@@ -307,11 +260,10 @@ TEST_F(InputSynthCommand, APoseThatCannotBeRenderedIsFoundFirst) {
        "view 3: "}};
   for (const auto& [last, more, says] : cases) {
     write_file(folder_ / "p.toml", usual + usual + last);
-    std::vector<std::string> arguments = {
-        "-o",     outputs_ + "/v%d.png", "--calibration", folder_ / "calib.txt",
-        "--pose", folder_ / "p.toml"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProcessResult result = synth_from_maps(arguments);
+    const ProcessResult result =
+        synth_from_maps(joined({"-o", outputs_ + "/v%d.png", "--calibration", folder_ / "calib.txt",
+                                "--pose", folder_ / "p.toml"},
+                               more));
     EXPECT_TRUE(result.exit_code == 1 || result.exit_code == 2) << last;
     EXPECT_TRUE(is_one_line(result, "synth"));
     EXPECT_THAT(result.err, HasSubstr(says));
@@ -320,14 +272,10 @@ TEST_F(InputSynthCommand, APoseThatCannotBeRenderedIsFoundFirst) {
 }
 
 TEST_F(SynthCommand, TwoEyesBecomeOnePicture) {
-  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/s.png", "--view", "0.5", "--eye-separation", "0.5",
-                             "--stereo-packing", "sbsl", "--no-intensity-matching"})
-                .exit_code,
-            0);
-  ASSERT_EQ(synth_from_maps({"-o", outputs_ + "/e%d.png", "--view", "0.25", "--view", "0.75",
-                             "--no-intensity-matching"})
-                .exit_code,
-            0);
+  succeeds(synth_from_maps({"-o", outputs_ + "/s.png", "--view", "0.5", "--eye-separation", "0.5",
+                            "--stereo-packing", "sbsl", "--no-intensity-matching"}));
+  succeeds(synth_from_maps({"-o", outputs_ + "/e%d.png", "--view", "0.25", "--view", "0.75",
+                            "--no-intensity-matching"}));
   Photograph left;
   Photograph right;
   unpack_stereo(read_photograph(outputs_ + "/s.png"), {}, left, right);
@@ -341,11 +289,8 @@ TEST_F(InputSynthCommand, MapsOfAnotherSizeAreAnError) {
   DisparityMap small(3, 3);
   small.fill(1);
   write_disparity(left_map_, small.view());
-  const ProcessResult result = synth_from_maps({"-o", outputs_ + "/v.mp4", "--sweep", "0:1:3"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "synth"));
+  expect_one_line(synth_from_maps({"-o", outputs_ + "/v.mp4", "--sweep", "0:1:3"}), 1, "synth");
   EXPECT_THAT(files_below(outputs_), IsEmpty());
 }
 
-}  // namespace command_synth_test
-}  // namespace vantage
+}  // namespace vantage::command_synth_test

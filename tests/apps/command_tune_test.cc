@@ -1,50 +1,36 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "engine/tuning/tuning_file.h"
 #include "engine/tuning/tuning_key.h"
 #include "scheduler/machine.h"
-#include "tests/apps/pair_fixture.h"
+#include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace command_tune_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
+namespace vantage::command_tune_test {
 
 /// A pair and a configuration folder of its own.
 class TuneTest : public PairTest {
  protected:
-  using Arguments = std::vector<std::string>;
-
-  [[nodiscard]] ProcessResult run(const Arguments& arguments) const {
+  [[nodiscard]] ProcessResult run(const Words& arguments) const {
     return run_vantage(arguments, {"XDG_CONFIG_HOME=" + config_});
   }
-  [[nodiscard]] ProcessResult tune(const Arguments& more = {}) const {
-    Arguments arguments = {"tune", "--size", "71x53", "--disparities=0:9", "--budget", "0.4"};
+  [[nodiscard]] ProcessResult tune(const Words& more = {}) const {
+    Words arguments = {"tune", "--size", "71x53", "--disparities=0:9", "--budget", "0.4"};
     return run(with_method(arguments, more));
   }
-  [[nodiscard]] ProcessResult match_tuned(const Arguments& more = {}) const {
-    Arguments arguments = {
-        "match",    left_,  right_, "-o", folder_ / "map.pfm", "--disparities=0:9",
-        "--report", report_};
+  [[nodiscard]] ProcessResult match_tuned(const Words& more = {}) const {
+    Words arguments = {"match",    left_,  right_, "-o", folder_ / "map.pfm", "--disparities=0:9",
+                       "--report", report_};
     return run(with_method(arguments, more));
   }
   /// With `more`, and with SSD unless that names a method.
-  static Arguments with_method(Arguments arguments, const Arguments& more) {
+  static Words with_method(Words arguments, const Words& more) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     if (std::ranges::find(more, "--method") == more.end()) {
       arguments.insert(arguments.end(), {"--method", "ssd"});
     }
     return arguments;
   }
-  [[nodiscard]] nlohmann::json report() const { return nlohmann::json::parse(read_file(report_)); }
+  [[nodiscard]] nlohmann::json report() const { return read_json(report_); }
 
   /// The key that `match` looks for with the pair of this test.
   [[nodiscard]] TuningKey key(const ExecutionOptions& execution = {},
@@ -73,8 +59,7 @@ class TuneTest : public PairTest {
 using SlowTuneTest = TuneTest;
 
 TEST_F(SlowTuneTest, FindsStoresAndTells) {
-  const ProcessResult result = tune({"--report", report_, "--images", "grey"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = succeeds(tune({"--report", report_, "--images", "grey"}));
   EXPECT_THAT(result.out, HasSubstr("squared box about 8 px, 8-bit grey"));
   EXPECT_THAT(result.out, HasSubstr("median ms"));
   EXPECT_THAT(result.out, HasSubstr("saved in " + file_.string()));
@@ -90,12 +75,11 @@ TEST_F(SlowTuneTest, FindsStoresAndTells) {
   EXPECT_GE(json["results"]["match"]["final_noise"], 0);
   EXPECT_TRUE(json["results"].contains("processors_used_by_others"));
 
-  const ProcessResult list = run({"tune", "--list"});
-  EXPECT_EQ(list.exit_code, 0);
+  const ProcessResult list = succeeds(run({"tune", "--list"}));
   EXPECT_THAT(list.out, HasSubstr("1 entry"));
   EXPECT_THAT(list.out, HasSubstr(content.entries[0].key.machine));
   // The entry is what match then looks for.
-  ASSERT_EQ(match_tuned().exit_code, 0);
+  succeeds(match_tuned());
   EXPECT_EQ(report()["tuning"]["key"], content.entries[0].key.text());
   const ProcessResult forget = run({"tune", "--forget"});
   EXPECT_THAT(forget.out, HasSubstr("1 entry of this machine removed"));
@@ -103,13 +87,12 @@ TEST_F(SlowTuneTest, FindsStoresAndTells) {
 }
 
 TEST_F(SlowTuneTest, TunesOneUse) {
-  ASSERT_EQ(tune({"--for", "match"}).exit_code, 0);
+  succeeds(tune({"--for", "match"}));
   EXPECT_FALSE(read_tuning_file(file_).entries.at(0).run);
 }
 
 TEST_F(TuneTest, DryRunTellsAndStoresNothing) {
-  const ProcessResult result = tune({"--dry-run"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = succeeds(tune({"--dry-run"}));
   EXPECT_THAT(result.out, HasSubstr(file_.string()));
   EXPECT_FALSE(fs::exists(config_));
 }
@@ -137,26 +120,22 @@ TEST_F(SlowTuneTest, AnUnwritableFileFailsAfterTheResultsAreShown) {
 using InputTuneCommand = TuneTest;
 
 TEST_F(InputTuneCommand, RefusesWrongUsage) {
-  for (const auto& [arguments, message] : std::vector<std::pair<Arguments, std::string>>{
-           {{"tune"}, "--size is missing"},
-           {{"tune", "--size", "71"}, "--size is '71', expected WxH"},
-           {{"tune", "--size", "71x-3"}, "size is 71x-3"},
-           {{"tune", "--size", "71x53", "--disparities=auto"}, "--disparities is auto"},
-           {{"tune", "--size", "71x53", "--budget", "-1"}, "budget is -1"},
-           {{"tune", "--size", "71x53", "--window", "4"}, "window is 4"},
-           {{"tune", "--list", "--budget", "5"}, "--budget has no effect with --list"},
-           {{"tune", "--list", "--forget"}, "are both given"}}) {
-    const ProcessResult result = run(arguments);
-    EXPECT_EQ(result.exit_code, 2) << message;
-    EXPECT_TRUE(is_one_line(result, "tune"));
-    EXPECT_THAT(result.err, HasSubstr(message));
-  }
+  const std::vector<Refusal> refusals = {
+      {{"tune"}, "--size is missing"},
+      {{"tune", "--size", "71"}, "--size is '71', expected WxH"},
+      {{"tune", "--size", "71x-3"}, "size is 71x-3"},
+      {{"tune", "--size", "71x53", "--disparities=auto"}, "--disparities is auto"},
+      {{"tune", "--size", "71x53", "--budget", "-1"}, "budget is -1"},
+      {{"tune", "--size", "71x53", "--window", "4"}, "window is 4"},
+      {{"tune", "--list", "--budget", "5"}, "--budget has no effect with --list"},
+      {{"tune", "--list", "--forget"}, "are both given"}};
+  expect_refusals("tune", folder_.path(), refusals, [&](const Words& words) { return run(words); });
 }
 
 TEST_F(TuneTest, MatchUsesItsEntryAndTheMapIsTheSame) {
   for (const auto& [name, method] :
        {std::pair("ssd", MatchMethod::kSsd), std::pair("bayes", MatchMethod::kBayes)}) {
-    ASSERT_EQ(match_tuned({"--no-tuning", "--method", name}).exit_code, 0);
+    succeeds(match_tuned({"--no-tuning", "--method", name}));
     const std::string expected = read_file(folder_ / "map.pfm");
     EXPECT_EQ(report()["tuning"]["key"], nullptr);
     EXPECT_EQ(report()["tuning"]["reason"], "--no-tuning");
@@ -164,8 +143,7 @@ TEST_F(TuneTest, MatchUsesItsEntryAndTheMapIsTheSame) {
     TunedSettings settings = odd_;
     settings.iterations_per_pass = 3;
     store(key({}, method), settings);
-    const ProcessResult result = match_tuned({"--method", name});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const ProcessResult result = succeeds(match_tuned({"--method", name}));
     EXPECT_THAT(result.err, HasSubstr("tuned: threads 3, strip-width 7"));
     EXPECT_EQ(read_file(folder_ / "map.pfm"), expected);
     const nlohmann::json json = report();
@@ -179,21 +157,21 @@ TEST_F(TuneTest, MatchUsesItsEntryAndTheMapIsTheSame) {
 
 TEST_F(TuneTest, GivenOptionsGoFirst) {
   store(key(), odd_);
-  ASSERT_EQ(match_tuned({"--strip-width", "11"}).exit_code, 0);
+  succeeds(match_tuned({"--strip-width", "11"}));
   EXPECT_EQ(report()["plan"]["passes"][0]["strip_width_px"], 11);
   EXPECT_EQ(report()["plan"]["passes"][0]["band_height_px"], 5);
   EXPECT_FALSE(report()["tuning"]["settings"].contains("strip-width"));
   // Another number of threads is other work.
-  ASSERT_EQ(match_tuned({"--threads", "1"}).exit_code, 0);
+  succeeds(match_tuned({"--threads", "1"}));
   EXPECT_EQ(report()["threads"], 1);
   EXPECT_EQ(report()["tuning"]["key"], nullptr);
   store(key({.threads = 1}), {.strip_width_px = 13});
-  ASSERT_EQ(match_tuned({"--threads", "1"}).exit_code, 0);
+  succeeds(match_tuned({"--threads", "1"}));
   EXPECT_EQ(report()["plan"]["passes"][0]["strip_width_px"], 13);
 }
 
 TEST_F(TuneTest, WithoutAnEntryTheReportSaysWhatWasWanted) {
-  ASSERT_EQ(match_tuned().exit_code, 0);
+  succeeds(match_tuned());
   EXPECT_EQ(report()["tuning"]["wanted"], key().text());
   EXPECT_EQ(report()["tuning"]["reason"], "no entry for this work");
 }
@@ -201,8 +179,7 @@ TEST_F(TuneTest, WithoutAnEntryTheReportSaysWhatWasWanted) {
 TEST_F(InputTuneCommand, ADamagedFileIsAWarning) {
   fs::create_directories(file_.parent_path());
   write_file(file_, "{ damaged");
-  ProcessResult result = match_tuned();
-  EXPECT_EQ(result.exit_code, 0);
+  ProcessResult result = succeeds(match_tuned());
   EXPECT_THAT(result.err, HasSubstr("match: warning: tuning is not used: " + file_.string()));
   EXPECT_THAT(report()["tuning"]["reason"].get<std::string>(), HasSubstr("not JSON"));
   result = match_tuned({"--quiet"});
@@ -213,12 +190,11 @@ TEST_F(InputTuneCommand, ADamagedFileIsAWarning) {
 
 TEST_F(SlowTuneTest, AnotherFileCanBeNamed) {
   const std::string other = folder_ / "cluster.json";
-  ASSERT_EQ(tune({"--output", other, "--for", "match", "--images", "grey"}).exit_code, 0);
+  succeeds(tune({"--output", other, "--for", "match", "--images", "grey"}));
   EXPECT_FALSE(fs::exists(config_));
-  ASSERT_EQ(match_tuned({"--tuning", other}).exit_code, 0);
+  succeeds(match_tuned({"--tuning", other}));
   EXPECT_EQ(report()["tuning"]["file"], other);
-  const ProcessResult result = match_tuned({"--tuning", folder_ / "none.json"});
-  EXPECT_EQ(result.exit_code, 0);
+  const ProcessResult result = succeeds(match_tuned({"--tuning", folder_ / "none.json"}));
   EXPECT_THAT(result.err, HasSubstr("no such file"));
 }
 
@@ -229,21 +205,18 @@ TEST_F(TuneTest, RunUsesItsEntryAndTheFilesAreTheSame) {
       fs::copy_file(folder_ / (side + ".png"), fs::path(folder_ / (side + "s")) / frame);
     }
   }
-  const auto run_sequence = [&](const std::string& out, const Arguments& more) {
-    Arguments arguments = {
-        "run", "--left",      folder_ / "lefts",   "--right",  folder_ / "rights",
-        "-o",  folder_ / out, "--disparities=0:9", "--report", report_};
+  const auto run_sequence = [&](const std::string& out, const Words& more) {
+    Words arguments = {"run", "--left",      folder_ / "lefts",   "--right",  folder_ / "rights",
+                       "-o",  folder_ / out, "--disparities=0:9", "--report", report_};
     return run(with_method(arguments, more));
   };
-  ProcessResult result = run_sequence("plain", {"--no-tuning"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ProcessResult result = succeeds(run_sequence("plain", {"--no-tuning"}));
   EXPECT_EQ(report()["tuning"]["reason"], "--no-tuning");
 
   TunedSettings settings = odd_;
   settings.frames_in_flight = 2;
   store(key(), settings);
-  result = run_sequence("tuned", {});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  result = succeeds(run_sequence("tuned", {}));
   EXPECT_THAT(result.err, HasSubstr("3 threads (tbb), 2 frames in flight"));
   EXPECT_THAT(result.err, HasSubstr("run: tuned: threads 3, in-flight 2, strip-width 7"));
   EXPECT_EQ(report()["tuning"]["key"], key().text());
@@ -255,13 +228,10 @@ TEST_F(TuneTest, RunUsesItsEntryAndTheFilesAreTheSame) {
   // Options go first, and a limit of memory is planned for without a tuned plan.
   result = run_sequence("given", {"--in-flight", "4"});
   EXPECT_THAT(result.err, HasSubstr("4 frames in flight"));
-  result = run_sequence("limited", {"--memory", "2G"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  result = succeeds(run_sequence("limited", {"--memory", "2G"}));
   EXPECT_THAT(report()["tuning"]["reason"].get<std::string>(), HasSubstr("--memory"));
   // A run can be continued with other tuning.
-  result = run_sequence("plain", {"--resume"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  result = succeeds(run_sequence("plain", {"--resume"}));
 }
 
-}  // namespace command_tune_test
-}  // namespace vantage
+}  // namespace vantage::command_tune_test

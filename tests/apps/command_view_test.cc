@@ -1,23 +1,12 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <regex>
-#include <string>
 #include <variant>
 
-#include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
 #include "tests/decoded_base64.h"
 
-namespace vantage {
-namespace command_view_test {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+namespace vantage::command_view_test {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
@@ -35,7 +24,7 @@ class ViewCommand : public PairTest {
  protected:
   ViewCommand() {
     outputs_ = folder_ / "out";
-    std::filesystem::create_directory(outputs_);
+    fs::create_directory(outputs_);
     write_maps();
   }
 
@@ -44,21 +33,16 @@ class ViewCommand : public PairTest {
     write_disparity(right_map_, pair_.right_disparity.view());
   }
 
-  [[nodiscard]] ProcessResult view(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"view", left_, right_, "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult view(const Words& more) const {
+    return run_vantage(joined({"view", left_, right_, "--quiet"}, more));
   }
-  [[nodiscard]] ProcessResult view_from_maps(std::vector<std::string> more) const {
+  [[nodiscard]] ProcessResult view_from_maps(Words more) const {
     more.insert(more.end(), {"--left-disparity", left_map_, "--right-disparity", right_map_});
     return view(more);
   }
   /// The text of the page, which must come to be.
-  [[nodiscard]] std::string page(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"-o", outputs_ + "/page.html"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProcessResult result = view_from_maps(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+  [[nodiscard]] std::string page(const Words& more = {}) const {
+    succeeds(view_from_maps(joined({"-o", outputs_ + "/page.html"}, more)));
     return read_file(outputs_ + "/page.html");
   }
 
@@ -190,8 +174,8 @@ TEST_F(ViewCommand, OptionsReachThePage) {
   EXPECT_NEAR(usual["intensity"]["gain"][0], 1.0, 0.1);
 
   const nlohmann::json other =
-      scene_of(page({"--range=0:1", "--vertical-range=0:0", "--holes", "spread", "--gradient-limit",
-                     "2.5", "--no-intensity-matching"}));
+      scene_of(page(words("--range=0:1 --vertical-range=0:0 --holes spread --gradient-limit 2.5 "
+                          "--no-intensity-matching")));
   EXPECT_THAT(other["rangeX"], ElementsAre(0.0, 1.0));
   EXPECT_THAT(other["rangeY"], ElementsAre(0.0, 0.0));
   EXPECT_EQ(scene_of(page({"--gamma", "0.25"}))["gamma"], 0.25);
@@ -206,7 +190,7 @@ TEST_F(ViewCommand, OptionsReachThePage) {
 
 TEST_F(ViewCommand, NamesOfFilesCannotChangeThePage) {
   const std::string name = folder_ / "a\"<script>&{{scene}}.png";
-  std::filesystem::rename(left_, name);
+  fs::rename(left_, name);
   left_ = name;
   const std::string text = page();
   EXPECT_THAT(text, HasSubstr("<title>a&quot;&lt;script&gt;&amp;{{scene}}.png and right.png"));
@@ -234,12 +218,11 @@ TEST_F(ViewCommand, DeepAndTransparentPhotographsBecomeEightBitColours) {
 }
 
 TEST_F(ViewCommand, MatchesThePairWithoutMaps) {
-  const ProcessResult result = view({"-o", outputs_ + "/p.html", "--disparities", "0:9", "--method",
-                                     "ssd", "--report", folder_ / "r.json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  succeeds(view({"-o", outputs_ + "/p.html", "--disparities", "0:9", "--method", "ssd", "--report",
+                 folder_ / "r.json"}));
+  const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);
-  EXPECT_EQ(report["results"]["page_bytes"], std::filesystem::file_size(outputs_ + "/p.html"));
+  EXPECT_EQ(report["results"]["page_bytes"], fs::file_size(outputs_ + "/p.html"));
   const DisparityMap map = map_in(read_file(outputs_ + "/p.html"), "left-map");
   EXPECT_LT(bad_share(map, pair_.left_disparity, pair_.left_occluded), 0.05);
 }
@@ -248,7 +231,7 @@ using InputViewCommand = ViewCommand;
 
 TEST_F(InputViewCommand, WrongUsageIsOneLineAndExit2) {
   const std::string out = outputs_ + "/p.html";
-  const std::vector<std::pair<std::vector<std::string>, std::string>> misuses = {
+  const std::vector<Refusal> refusals = {
       {{}, "--output is"},
       {{"-o", outputs_ + "/p.png"}, "ends in .html"},
       {{"-o", out, "--range", "1"}, "--range is '1'"},
@@ -262,23 +245,13 @@ TEST_F(InputViewCommand, WrongUsageIsOneLineAndExit2) {
       {{"-o", out, "--left-disparity", left_map_}, "--right-disparity is missing"},
       {{"-o", out, "--left-disparity", left_map_, "--right-disparity", right_map_, "--window", "5"},
        "--window has no effect"}};
-  SCOPED_TRACE(test::sample_name());
-  for (const auto& [arguments, says] :
-       sampled_command_lines(misuses, [](const auto& misuse) { return misuse.first; })) {
-    const ProcessResult result = view(arguments);
-    EXPECT_EQ(result.exit_code, 2) << says;
-    EXPECT_TRUE(is_one_line(result, "view"));
-    EXPECT_THAT(result.err, HasSubstr(says));
-  }
-  EXPECT_THAT(files_below(outputs_), IsEmpty());
+  expect_refusals("view", folder_.path(), refusals,
+                  [&](const Words& words) { return view(words); });
 }
 
 TEST_F(InputViewCommand, InputsThatDoNotFitAreAnErrorAndLeaveNothing) {
   const auto expect_error = [&](const std::string& says) {
-    const ProcessResult result = view_from_maps({"-o", outputs_ + "/p.html"});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_TRUE(is_one_line(result, "view"));
-    EXPECT_THAT(result.err, HasSubstr(says));
+    expect_one_line(view_from_maps({"-o", outputs_ + "/p.html"}), 1, "view", says);
     EXPECT_THAT(files_below(outputs_), IsEmpty());
   };
   pair_.left_disparity.at(0, 0) = 5000;
@@ -290,5 +263,4 @@ TEST_F(InputViewCommand, InputsThatDoNotFitAreAnErrorAndLeaveNothing) {
   expect_error("left disparity map is 3×3, expected 71×53");
 }
 
-}  // namespace command_view_test
-}  // namespace vantage
+}  // namespace vantage::command_view_test

@@ -1,30 +1,17 @@
 // Hand-held photographs without poses: `scene poses`, and what `scene build` makes of its model.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
-#include <cmath>
-#include <filesystem>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/io/images/photograph_io.h"
 #include "tests/apps/vantage_process.h"
-#include "tests/temporary_folder.h"
 
-namespace vantage {
-namespace estimated_scene_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
+namespace vantage::estimated_scene_test {
 
 Eigen::Matrix3d turned(double x, double y, double z) {
   constexpr double kDegree = std::numbers::pi / 180;
@@ -101,10 +88,8 @@ class EstimatedScene : public testing::Test {
     cameras_.push_back(made);
   }
 
-  [[nodiscard]] ProcessResult poses(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"scene", "poses", "--images", images_, "-o", model_};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult poses(const Words& more) const {
+    return run_vantage(joined({"scene", "poses", "--images", images_, "-o", model_}, more));
   }
 
   Execution execution_{{.threads = 2}};
@@ -119,9 +104,8 @@ class EstimatedScene : public testing::Test {
 TEST_F(EstimatedScene, PosesLeadToViewsAndClouds) {
   const double metres = (cameras_[3].centre() - cameras_[0].centre()).norm();
   const ProcessResult found =
-      poses({"--intrinsics", lens_, "--known-distance", fmt::format("0:3:{}", metres), "--report",
-             folder_ / "poses.json"});
-  ASSERT_EQ(found.exit_code, 0) << found.err;
+      succeeds(poses({"--intrinsics", lens_, "--known-distance", fmt::format("0:3:{}", metres),
+                      "--report", folder_ / "poses.json"}));
   EXPECT_THAT(found.err, HasSubstr("4 of 4 images"));
   const auto images = model_images(model_);
   ASSERT_EQ(images.size(), 4U);
@@ -154,15 +138,14 @@ TEST_F(EstimatedScene, PosesLeadToViewsAndClouds) {
   }
   EXPECT_GT(sightings, 300);
   EXPECT_LT(sum / sightings, 0.5);
-  const auto results = nlohmann::json::parse(read_file(folder_ / "poses.json")).at("results");
+  const auto results = read_json(folder_ / "poses.json").at("results");
   EXPECT_EQ(results.at("unit"), "metre");
   EXPECT_EQ(results.at("sightings"), sightings);
   EXPECT_LE(results.at("median_px"), results.at("median_px_before_adjustment"));
 
   const std::string place = folder_ / "scene";
-  const ProcessResult built = run_vantage({"scene", "build", "--poses", model_, "--images", images_,
-                                           "-o", place, "--preset", "fast", "--disparities=0:20"});
-  ASSERT_EQ(built.exit_code, 0) << built.err;
+  succeeds(run_vantage({"scene", "build", "--poses", model_, "--images", images_, "-o", place,
+                        "--preset", "fast", "--disparities=0:20"}));
   PosedCamera wanted = scene_.camera({});
   wanted.rotation = turned(0.2, 0.3, 1);
   wanted.translation = -wanted.rotation * Eigen::Vector3d(0.5, 0.5, 0.05);
@@ -176,16 +159,13 @@ TEST_F(EstimatedScene, PosesLeadToViewsAndClouds) {
          {"R", {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
          {"t", {t.x(), t.y(), t.z()}}}}}};
   write_file(folder_ / "pose.json", view.dump());
-  ASSERT_EQ(run_vantage({"scene", "view", place, "--pose", folder_ / "pose.json", "-o",
-                         folder_ / "view.png"})
-                .exit_code,
-            0);
+  succeeds(run_vantage(
+      {"scene", "view", place, "--pose", folder_ / "pose.json", "-o", folder_ / "view.png"}));
   EXPECT_GT(evaluate_view(read_photograph(folder_ / "view.png"), scene_.render(wanted, 0).image,
                           execution_)
                 .psnr_db,
             22);
-  const ProcessResult cloud = run_vantage({"scene", "cloud", place, "-o", folder_ / "cloud.ply"});
-  EXPECT_EQ(cloud.exit_code, 0) << cloud.err;
+  succeeds(run_vantage({"scene", "cloud", place, "-o", folder_ / "cloud.ply"}));
 }
 
 TEST_F(EstimatedScene, ImagesThatDoNotBelongAreNamed) {
@@ -195,15 +175,14 @@ TEST_F(EstimatedScene, ImagesThatDoNotBelongAreNamed) {
   write_photograph(images_ + "/4.png",
                    LayeredScene(other, execution_).render(SceneView{}, 50).image);
   const ProcessResult found = poses({});
-  EXPECT_EQ(found.exit_code, 3) << found.err;
-  EXPECT_THAT(found.err, HasSubstr("4.png is left out: no pair joins it to the other images"));
+  expect_failure(found, 3, "4.png is left out: no pair joins it to the other images");
   EXPECT_THAT(found.err, HasSubstr("4 of 5 images"));
   EXPECT_THAT(found.err, HasSubstr("lengths have no scale"));
   EXPECT_EQ(model_images(model_).size(), 4U);
 }
 
 TEST_F(EstimatedScene, WrongInputIsRefused) {
-  const auto problem = [&](const std::vector<std::string>& more) {
+  const auto problem = [&](const Words& more) {
     const ProcessResult result = poses(more);
     EXPECT_NE(result.exit_code, 0);
     EXPECT_FALSE(fs::exists(model_ + "/images.txt"));
@@ -228,5 +207,4 @@ TEST_F(EstimatedScene, WrongInputIsRefused) {
   EXPECT_THAT(problem({}), HasSubstr("there are 1 images, expected 2 to 500"));
 }
 
-}  // namespace estimated_scene_test
-}  // namespace vantage
+}  // namespace vantage::estimated_scene_test

@@ -1,22 +1,8 @@
 // Which of KITTI's four cameras a calibration is taken for.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
-#include "engine/io/maps/disparity_io.h"
 #include "tests/apps/pair_fixture.h"
 
-namespace vantage {
-namespace kitti_cameras_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
+namespace vantage::kitti_cameras_test {
 
 constexpr const char* kGreyLines =
     "P0: 70 0 35 0 0 70 26 0 0 0 1 0\n"
@@ -44,26 +30,15 @@ class KittiCameras : public PairTest {
 
   /// Baseline that 'match' uses for images in two folders; its messages go to `err`.
   [[nodiscard]] double baseline(const std::string& left, const std::string& right,
-                                const std::vector<std::string>& more, std::string& err) const {
+                                const Words& more, std::string& err) const {
     const std::string report = folder_ / "report.json";
-    std::vector<std::string> arguments = {"match",
-                                          folder_ / left + "/000000.png",
-                                          folder_ / right + "/000000.png",
-                                          "-o",
-                                          folder_ / "map.pfm",
-                                          "--disparities=1:9",
-                                          "--no-rectification-check",
-                                          "--calibration",
-                                          file_,
-                                          "--depth-resolution",
-                                          folder_ / "resolution.npy",
-                                          "--report",
-                                          report};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const ProcessResult result = succeeds(run_vantage(joined(
+        {"match", folder_ / left + "/000000.png", folder_ / right + "/000000.png", "-o",
+         folder_ / "map.pfm", "--disparities=1:9", "--no-rectification-check", "--calibration",
+         file_, "--depth-resolution", folder_ / "resolution.npy", "--report", report},
+        more)));
     err = result.err;
-    return nlohmann::json::parse(read_file(report))["results"]["depth_resolution"]["baseline"];
+    return read_json(report)["results"]["depth_resolution"]["baseline"];
   }
 
   std::string file_ = folder_ / "calib.txt";
@@ -91,11 +66,11 @@ TEST_F(KittiCameras, AreTheSameInAllCommands) {
   std::string err;
   EXPECT_NEAR(baseline("image_2", "image_3", {}, err), 0.6, 1e-9);
   const std::string image = folder_ / "image_2/000000.png";
-  const auto reproject = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"reproject", folder_ / "map.pfm", "--calibration",
-                                          file_,       "--depth",           folder_ / "z.npy"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments).err;
+  const auto reproject = [&](const Words& more) {
+    return run_vantage(joined({"reproject", folder_ / "map.pfm", "--calibration", file_, "--depth",
+                               folder_ / "z.npy"},
+                              more))
+        .err;
   };
   EXPECT_THAT(reproject({"--image", image, "--cloud", folder_ / "cloud.ply"}),
               HasSubstr("baseline 0.6 m"));
@@ -112,49 +87,42 @@ TEST_F(KittiCameras, AreTheSameInAllCommands) {
   EXPECT_THAT(view.err, HasSubstr("synth: --kitti-cameras auto is 2,3\n"));
 
   const std::string out = folder_ / "run";
-  const std::vector<std::string> run = {"run",
-                                        "--left",
-                                        folder_ / "image_2",
-                                        "--right",
-                                        folder_ / "image_3",
-                                        "--calibration",
-                                        file_,
-                                        "--save",
-                                        "disparity,depth",
-                                        "--depth-format",
-                                        "npy",
-                                        "-o",
-                                        out,
-                                        "--disparities",
-                                        "1:9"};
+  const Words run = {"run",
+                     "--left",
+                     folder_ / "image_2",
+                     "--right",
+                     folder_ / "image_3",
+                     "--calibration",
+                     file_,
+                     "--save",
+                     "disparity,depth",
+                     "--depth-format",
+                     "npy",
+                     "-o",
+                     out,
+                     "--disparities",
+                     "1:9"};
   const ProcessResult ran = run_vantage(run);
   EXPECT_THAT(ran.err, HasSubstr("run: --kitti-cameras auto is 2,3\n"));
   const DisparityMap disparities = read_disparity(out + "/disparity/000000.pfm");
   const DisparityMap depths = read_disparity(out + "/depth/000000.npy");
   EXPECT_NEAR(depths.at(35, 26), 0.6 * 70 / disparities.at(35, 26), 1e-4);
 
-  std::vector<std::string> other = run;
-  other.insert(other.end(), {"--resume", "--kitti-cameras", "0,1"});
-  EXPECT_THAT(run_vantage(other).err, HasSubstr("kitti-cameras"));
+  EXPECT_THAT(run_vantage(joined(run, {"--resume", "--kitti-cameras", "0,1"})).err,
+              HasSubstr("kitti-cameras"));
 }
 
 TEST_F(KittiCameras, ErrorsNameTheOption) {
-  const ProcessResult idle = match(folder_ / "map.pfm", {"--kitti-cameras", "2,3"});
-  EXPECT_EQ(idle.exit_code, 2);
-  EXPECT_THAT(idle.err, HasSubstr("--kitti-cameras has no effect without --calibration"));
+  expect_failure(match(folder_ / "map.pfm", {"--kitti-cameras", "2,3"}), 2,
+                 "--kitti-cameras has no effect without --calibration");
   write_file(file_, kGreyLines);
-  const ProcessResult missing =
-      match(folder_ / "map.pfm", {"--kitti-cameras", "2,3", "--calibration", file_});
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.err, HasSubstr("calib.txt: there is no P2 in it"));
+  expect_failure(match(folder_ / "map.pfm", {"--kitti-cameras", "2,3", "--calibration", file_}), 1,
+                 "calib.txt: there is no P2 in it");
   write_file(file_,
              "cam0=[70 0 35; 0 70 26; 0 0 1]\ncam1=[70 0 35; 0 70 26; 0 0 1]\n"
              "doffs=0\nbaseline=100\nwidth=71\nheight=53\n");
-  const ProcessResult of_others =
-      match(folder_ / "map.pfm", {"--kitti-cameras", "2,3", "--calibration", file_});
-  EXPECT_EQ(of_others.exit_code, 1);
-  EXPECT_THAT(of_others.err, HasSubstr("calib.txt: has format Middlebury, expected KITTI"));
+  expect_failure(match(folder_ / "map.pfm", {"--kitti-cameras", "2,3", "--calibration", file_}), 1,
+                 "calib.txt: has format Middlebury, expected KITTI");
 }
 
-}  // namespace kitti_cameras_test
-}  // namespace vantage
+}  // namespace vantage::kitti_cameras_test

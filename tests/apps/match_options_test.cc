@@ -1,33 +1,20 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
 #include "engine/image/transposed.h"
 #include "engine/matching/options/method_fields.h"
-#include "tests/apps/pair_fixture.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace match_options_test {
-
-using testing::HasSubstr;
+namespace vantage::match_options_test {
 
 using MatchCommandOptions = PairTest;
-
-struct Refused {
-  std::vector<std::string> options;
-  std::string says;
-};
 
 using InputMatchOptions = MatchCommandOptions;
 
 TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
-  const std::vector<Refused> cases = {
+  const std::vector<Refusal> refusals = {
       {{"--method", "ssd", "--window", "182"},
        "window is 182, expected an odd number from 1 to 181"},
       {{"--iterations", "-1"}, "iterations is -1, expected a number from 0 to 10000"},
@@ -153,30 +140,20 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--baselines", "1", "--reference", "right"}, "--reference right cannot be used with"},
       {{"--baselines", "1", "--disparities-y", "0:1"}, "--disparities-y cannot be used with"},
       {{"--vertical", "--disparities-y", "1:0"}, "disparities-y is 1:0, expected MIN:MAX"}};
-  const auto before = files_below(folder_.path());
-  SCOPED_TRACE(test::sample_name());
-  for (const Refused& refused :
-       sampled_command_lines(cases, [](const Refused& one) { return one.options; })) {
-    std::vector<std::string> arguments = {"match", left_, right_, "-o", folder_ / "out.pfm"};
-    arguments.insert(arguments.end(), refused.options.begin(), refused.options.end());
+  expect_refusals("match", folder_.path(), refusals, [&](const Words& words) {
+    Words arguments = joined({"match", left_, right_, "-o", folder_ / "out.pfm"}, words);
     if (std::ranges::find(arguments, "--disparities") == arguments.end()) {
       arguments.insert(arguments.end(), {"--disparities", "0:63"});  // nothing is looked for first
     }
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 2) << refused.says << '\n' << result.err;
-    EXPECT_TRUE(is_one_line(result, "match"));
-    EXPECT_THAT(result.err, HasSubstr(refused.says));
-  }
-  EXPECT_EQ(files_below(folder_.path()), before);
+    return run_vantage(arguments);
+  });
 }
 
 TEST_F(InputMatchOptions, ImagesOfUnequalSizeAmongSeveralAreNamed) {
   write_photograph(folder_ / "small.png", {Image<std::uint8_t>(7, 9)});
   const ProcessResult result =
       match(folder_ / "out.pfm", {folder_ / "small.png", "--baselines=1,2"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "match"));
-  EXPECT_THAT(result.err, HasSubstr("small.png is 7x9 but "));
+  expect_one_line(result, 1, "match", "small.png is 7x9 but ");
   EXPECT_THAT(result.err, HasSubstr("left.png is 71x53, expected equal sizes"));
   // Positions are looked at before images are read.
   EXPECT_EQ(match(folder_ / "out.pfm", {folder_ / "small.png", "--baselines=1,1"}).exit_code, 2);
@@ -188,29 +165,24 @@ TEST_F(InputMatchOptions, AFileOrAPrintedConfigIsLookedAtLikeTheCommandLine) {
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("mu is set but has no effect with method ssd"));
   // A printed file names every setting; only what differs from its default is the user's.
-  const std::vector<std::string> synth = {"synth",           left_,    right_, "-o",
-                                          folder_ / "v.png", "--view", "0.5",  "--disparities=0:9"};
+  const Words synth = {"synth",           left_,    right_, "-o",
+                       folder_ / "v.png", "--view", "0.5",  "--disparities=0:9"};
   auto printed = synth;
   printed.emplace_back("--print-config");
   write_file(folder_ / "synth.toml", run_vantage(printed).out);
-  result = run_vantage({"synth", "--config", folder_ / "synth.toml"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  result = succeeds(run_vantage({"synth", "--config", folder_ / "synth.toml"}));
   for (const auto& [line, says] :
        {std::pair("fps = '30'\n", "--fps has no effect without an output that ends in .mp4"),
         std::pair("gamma = 0.25\nno-intensity-matching = true\n",
                   "--gamma has no effect with --no-intensity-matching")}) {
     write_file(folder_ / "idle.toml", line);
-    auto idle = synth;
-    idle.insert(idle.end(), {"--config", folder_ / "idle.toml"});
-    result = run_vantage(idle);
-    EXPECT_EQ(result.exit_code, 2) << line;
-    EXPECT_THAT(result.err, HasSubstr(says));
+    expect_failure(run_vantage(joined(synth, {"--config", folder_ / "idle.toml"})), 2, says);
   }
 }
 
 TEST_F(MatchCommandOptions, EveryFieldOfAMethodHasAnOptionInItsOrder) {
   const std::string config = run_vantage({"match", "--print-config"}).out;
-  std::vector<std::string> names;
+  Words names;
   bool is_of_method = false;
   std::istringstream lines(config);
   for (std::string line; std::getline(lines, line);) {
@@ -220,7 +192,7 @@ TEST_F(MatchCommandOptions, EveryFieldOfAMethodHasAnOptionInItsOrder) {
       names.push_back(line.substr(0, line.find(' ')));
     }
   }
-  std::vector<std::string> of_fields;
+  Words of_fields;
   const MethodOverrides none;
   visit_fields(
       [&](const MethodField& field, const auto&) {
@@ -234,7 +206,7 @@ TEST_F(MatchCommandOptions, EveryFieldOfAMethodHasAnOptionInItsOrder) {
 
 TEST_F(MatchCommandOptions, TheFirstLineNamesWhatMapsAreMadeBy) {
   struct Choice {
-    std::vector<std::string> options;
+    Words options;
     std::string says;
     std::string preset;  ///< in the report
   };
@@ -252,12 +224,10 @@ TEST_F(MatchCommandOptions, TheFirstLineNamesWhatMapsAreMadeBy) {
        "none"},
       {{"--method", "membrane"}, "match: method membrane (", "none"}};
   for (const Choice& choice : choices) {
-    auto options = choice.options;
-    options.insert(options.end(), {"--report", folder_ / "r.json"});
-    const ProcessResult result = match(folder_ / "map.pfm", options);
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    Words options = joined(choice.options, {"--report", folder_ / "r.json"});
+    const ProcessResult result = succeeds(match(folder_ / "map.pfm", options));
     EXPECT_TRUE(result.err.starts_with(choice.says)) << result.err;
-    const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+    const auto report = read_json(folder_ / "r.json");
     EXPECT_EQ(report["settings"]["resolved"]["preset"], choice.preset);
     options.emplace_back("--quiet");
     EXPECT_EQ(match(folder_ / "map.pfm", options).err, "");
@@ -265,11 +235,9 @@ TEST_F(MatchCommandOptions, TheFirstLineNamesWhatMapsAreMadeBy) {
 }
 
 TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {
-  ASSERT_EQ(match(folder_ / "map.pfm", {"--method", "membrane", "--iterations", "3", "--report",
-                                        folder_ / "r.json", "--cross-check", "none"})
-                .exit_code,
-            0);
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  succeeds(match(folder_ / "map.pfm", {"--method", "membrane", "--iterations", "3", "--report",
+                                       folder_ / "r.json", "--cross-check", "none"}));
+  const auto report = read_json(folder_ / "r.json");
   const auto& settings = report["settings"];
   EXPECT_EQ(settings["method"], "membrane");
   EXPECT_EQ(settings["iterations"], 3);
@@ -299,12 +267,10 @@ TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {
 }
 
 TEST_F(MatchCommandOptions, ReportShowsWhatWasEstimated) {
-  ASSERT_EQ(match(folder_ / "map.pfm",
-                  {"--method", "bayes", "--cost", "combined", "--match-exposure", "estimated",
-                   "--sigma-measurement", "estimated", "--report", folder_ / "r.json"})
-                .exit_code,
-            0);
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"));
+  succeeds(match(folder_ / "map.pfm",
+                 {"--method", "bayes", "--cost", "combined", "--match-exposure", "estimated",
+                  "--sigma-measurement", "estimated", "--report", folder_ / "r.json"}));
+  const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["settings"]["sigma-measurement"], "estimated");
   EXPECT_EQ(report["settings"]["resolved"]["match-exposure"], "estimated");
   const auto& levels = report["results"]["grey_levels"];
@@ -318,28 +284,24 @@ TEST_F(MatchCommandOptions, ThePresetIsWhatPrintConfigSays) {
   const std::regex meaning("\n([a-z-]+) = 'auto'  # '?([^\n']+)");
   for (const std::string preset : {"realtime", "fast", "balanced", "quality"}) {
     const std::string config = run_vantage({"match", "--preset", preset, "--print-config"}).out;
-    std::vector<std::string> options = {"--method", "bayes"};
+    Words options = {"--method", "bayes"};
     for (std::sregex_iterator it(config.begin(), config.end(), meaning), end; it != end; ++it) {
       options.insert(options.end(), {"--" + (*it)[1].str(), (*it)[2]});
     }
     EXPECT_GT(options.size(), 40U);
-    ASSERT_EQ(match(folder_ / "a.pfm", options).exit_code, 0) << config;
-    ASSERT_EQ(match(folder_ / "b.pfm", {"--preset", preset}).exit_code, 0);
+    succeeds(match(folder_ / "a.pfm", options));
+    succeeds(match(folder_ / "b.pfm", {"--preset", preset}));
     EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm")) << preset;
   }
 }
 
 TEST_F(MatchCommandOptions, ConfidenceIsWrittenAndItsThresholdMarks) {
-  ASSERT_EQ(match(folder_ / "a.pfm", {"--method", "bayes", "--confidence", folder_ / "c.npy",
-                                      "--unmatched", folder_ / "a.png", "--cross-check", "none"})
-                .exit_code,
-            0);
+  succeeds(match(folder_ / "a.pfm", {"--method", "bayes", "--confidence", folder_ / "c.npy",
+                                     "--unmatched", folder_ / "a.png", "--cross-check", "none"}));
   const DisparityMap confidence = read_disparity(folder_ / "c.npy");
   ASSERT_EQ(confidence.width(), 71);
-  ASSERT_EQ(match(folder_ / "b.pfm", {"--method", "bayes", "--confidence-threshold", "0.99",
-                                      "--cross-check", "none", "--unmatched", folder_ / "b.png"})
-                .exit_code,
-            0);
+  succeeds(match(folder_ / "b.pfm", {"--method", "bayes", "--confidence-threshold", "0.99",
+                                     "--cross-check", "none", "--unmatched", folder_ / "b.png"}));
   const Photograph all_matched = read_photograph(folder_ / "a.png");
   const Photograph some_matched = read_photograph(folder_ / "b.png");
   int unsure = 0;
@@ -357,11 +319,9 @@ TEST_F(MatchCommandOptions, ConfidenceIsWrittenAndItsThresholdMarks) {
 }
 
 TEST_F(MatchCommandOptions, FillNoneLeavesTheUnmatchedUnknown) {
-  ASSERT_EQ(match(folder_ / "a.pfm",
-                  {"--fill", "none", "--output-right", folder_ / "r.pfm", "--unmatched",
-                   folder_ / "u.png", "--unmatched-right", folder_ / "v.png", "--cross-check", "1"})
-                .exit_code,
-            0);
+  succeeds(match(folder_ / "a.pfm", {"--fill", "none", "--output-right", folder_ / "r.pfm",
+                                     "--unmatched", folder_ / "u.png", "--unmatched-right",
+                                     folder_ / "v.png", "--cross-check", "1"}));
   for (const auto& [map_name, mask_name] :
        {std::pair{"a.pfm", "u.png"}, std::pair{"r.pfm", "v.png"}}) {
     const DisparityMap map = read_disparity(folder_ / map_name);
@@ -383,20 +343,11 @@ TEST_F(MatchCommandOptions, CamerasOneAboveTheOtherAreMatchedAlongColumns) {
   write_photograph(folder_ / "upper.png", transposed(read_photograph(left_)));
   write_photograph(folder_ / "lower.png", transposed(read_photograph(right_)));
   const auto match = [&](const std::string& left, const std::string& right, const std::string& name,
-                         std::vector<std::string> more) {
-    std::vector<std::string> arguments = {"match",
-                                          left,
-                                          right,
-                                          "-o",
-                                          folder_ / (name + ".pfm"),
-                                          "--confidence",
-                                          folder_ / (name + "-c.pfm"),
-                                          "--disparities=0:9",
-                                          "--fill",
-                                          "none"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProcessResult result = run_vantage(arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+                         Words more) {
+    succeeds(
+        run_vantage(joined({"match", left, right, "-o", folder_ / (name + ".pfm"), "--confidence",
+                            folder_ / (name + "-c.pfm"), "--disparities=0:9", "--fill", "none"},
+                           more)));
   };
   const auto expect_transposed = [&] {
     for (const std::string kind : {".pfm", "-c.pfm"}) {
@@ -432,10 +383,9 @@ TEST_F(MatchCommandOptions, TwoComponentsAreWrittenAsFlow) {
     std::copy_n(right.row(std::max(0, y - 1)), right.width(), lower.row(y));
   }
   write_photograph(folder_ / "lower.png", {std::move(lower)});
-  const ProcessResult result = run_vantage(
-      {"match", left_, folder_ / "lower.png", "-o", folder_ / "d.flo", "--disparities=0:9",
-       "--disparities-y=-2:2", "--method", "gradient", "--subpixel", "none"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(run_vantage({"match", left_, folder_ / "lower.png", "-o", folder_ / "d.flo",
+                        "--disparities=0:9", "--disparities-y=-2:2", "--method", "gradient",
+                        "--subpixel", "none"}));
   const std::string bytes = read_file(folder_ / "d.flo");
   ASSERT_EQ(bytes.size(), 12U + 71 * 53 * 8);
   int right_ones = 0;
@@ -455,61 +405,48 @@ TEST_F(MatchCommandOptions, TwoComponentsAreWrittenAsFlow) {
 TEST_F(MatchCommandOptions, SeveralImagesOfOneCameraAgreeWithThePair) {
   // The right image once more at twice the baseline would need twice the disparities; from the
   // other side of the reference a pair of mirrored baselines is the pair itself.
-  ASSERT_EQ(match(folder_ / "a.pfm", {"--method", "diffusion"}).exit_code, 0);
-  ASSERT_EQ(match(folder_ / "b.pfm", {"--baselines", "2.5", "--method", "diffusion"}).exit_code, 0);
+  succeeds(match(folder_ / "a.pfm", {"--method", "diffusion"}));
+  succeeds(match(folder_ / "b.pfm", {"--baselines", "2.5", "--method", "diffusion"}));
   EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
-  ASSERT_EQ(run_vantage({"match", right_, left_, "-o", folder_ / "c.pfm", "--disparities=0:9",
-                         "--baselines=-1", "--method", "diffusion"})
-                .exit_code,
-            0);
-  ASSERT_EQ(match(folder_ / "d.pfm", {"--reference", "right", "--method", "diffusion"}).exit_code,
-            0);
+  succeeds(run_vantage({"match", right_, left_, "-o", folder_ / "c.pfm", "--disparities=0:9",
+                        "--baselines=-1", "--method", "diffusion"}));
+  succeeds(match(folder_ / "d.pfm", {"--reference", "right", "--method", "diffusion"}));
   EXPECT_EQ(read_file(folder_ / "c.pfm"), read_file(folder_ / "d.pfm"));
 }
 
 TEST_F(MatchCommandOptions, SeveralImagesWorkWithEveryCostAndPreset) {
-  for (const char* const choice : {"--preset=realtime", "--preset=fast", "--preset=balanced",
-                                   "--preset=quality", "--cost=gradient", "--cost=combined"}) {
-    const ProcessResult result = match(
-        folder_ / "several.pfm", {left_, "--baselines=1,-2.37", choice, "--candidate-step", "0.5"});
-    EXPECT_EQ(result.exit_code, 0) << choice << ": " << result.err;
+  for (const std::string& choice :
+       words("--preset=realtime --preset=fast --preset=balanced --preset=quality --cost=gradient "
+             "--cost=combined")) {
+    succeeds(match(folder_ / "several.pfm",
+                   {left_, "--baselines=1,-2.37", choice, "--candidate-step", "0.5"}));
   }
 }
 
 TEST_F(MatchCommandOptions, RunAndSynthTakeThem) {
   ProcessResult result =
-      run_vantage({"synth", left_, right_, "-o", folder_ / "v.png", "--view", "0.5",
-                   "--disparities=0:9", "--preset", "balanced", "--edge-snapping", "2"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+      succeeds(run_vantage({"synth", left_, right_, "-o", folder_ / "v.png", "--view", "0.5",
+                            "--disparities=0:9", "--preset", "balanced", "--edge-snapping", "2"}));
   result = run_vantage({"synth", left_, right_, "-o", folder_ / "w.png", "--view", "0.5",
                         "--disparities=0:9", "--disparities-y", "0:1"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("--disparities-y"));
+  expect_failure(result, 2, "--disparities-y");
   for (const char* side : {"l", "r"}) {
-    std::filesystem::create_directory(folder_ / side);
+    fs::create_directory(folder_ / side);
   }
-  std::filesystem::copy_file(left_, folder_ / "l/0.png");
-  std::filesystem::copy_file(right_, folder_ / "r/0.png");
-  const std::vector<std::string> run = {"run",           "--left",           folder_ / "l",
-                                        "--right",       folder_ / "r",      "-o",
-                                        folder_ / "out", "--disparities=0:9"};
-  auto arguments = run;
-  arguments.insert(arguments.end(), {"--method", "gradient", "--save", "disparity,confidence"});
-  result = run_vantage(arguments);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/disparity/000000.pfm"));
-  ASSERT_EQ(match(folder_ / "a.pfm", {"--method", "gradient", "--confidence", folder_ / "c.pfm"})
-                .exit_code,
-            0);
+  fs::copy_file(left_, folder_ / "l/0.png");
+  fs::copy_file(right_, folder_ / "r/0.png");
+  const Words run = {"run",         "--left", folder_ / "l",   "--right",
+                     folder_ / "r", "-o",     folder_ / "out", "--disparities=0:9"};
+  Words arguments = joined(run, {"--method", "gradient", "--save", "disparity,confidence"});
+  result = succeeds(run_vantage(arguments));
+  EXPECT_TRUE(fs::exists(folder_ / "out/disparity/000000.pfm"));
+  succeeds(match(folder_ / "a.pfm", {"--method", "gradient", "--confidence", folder_ / "c.pfm"}));
   EXPECT_EQ(read_file(folder_ / "out/confidence/000000.pfm"), read_file(folder_ / "c.pfm"));
   arguments.insert(arguments.end(), {"--format", "png"});
-  result = run_vantage(arguments);
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("format is png, which holds no floats"));
+  expect_failure(run_vantage(arguments), 2, "format is png, which holds no floats");
   arguments = run;
   arguments.insert(arguments.end(), {"--disparities-y", "0:1"});
   EXPECT_EQ(run_vantage(arguments).exit_code, 2);
 }
 
-}  // namespace match_options_test
-}  // namespace vantage
+}  // namespace vantage::match_options_test

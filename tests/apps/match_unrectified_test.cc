@@ -1,19 +1,8 @@
 // match --unrectified: what it accepts, reports and refuses.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
+#include "tests/apps/sampling.h"
 
-#include "tests/apps/pair_fixture.h"
-
-namespace vantage {
-namespace match_unrectified_test {
-
-using testing::HasSubstr;
+namespace vantage::match_unrectified_test {
 
 /// Cameras of the size of the pair, turned and distorting.
 constexpr const char* kRig = R"(%YAML:1.0
@@ -32,122 +21,93 @@ class MatchUnrectified : public PairTest {
 };
 
 TEST_F(MatchUnrectified, MapsAreOnThePhotographs) {
-  const ProcessResult result =
-      match(folder_ / "m.pfm",
-            {"--unrectified", rig_, "--output-right", folder_ / "r.pfm", "--confidence",
-             folder_ / "c.pfm", "--unmatched", folder_ / "u.png", "--preview", folder_ / "p.png",
-             "--report", folder_ / "report.json", "--preset", "realtime"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(match(folder_ / "m.pfm",
+                 {"--unrectified", rig_, "--output-right", folder_ / "r.pfm", "--confidence",
+                  folder_ / "c.pfm", "--unmatched", folder_ / "u.png", "--preview",
+                  folder_ / "p.png", "--report", folder_ / "report.json", "--preset", "realtime"}));
   for (const std::string file : {"m.pfm", "r.pfm", "c.pfm"}) {
     EXPECT_THAT(read_file(folder_ / file).substr(0, 9), HasSubstr("Pf\n71 53")) << file;
   }
-  const auto report = nlohmann::json::parse(read_file(folder_ / "report.json"));
+  const auto report = read_json(folder_ / "report.json");
   EXPECT_EQ(report["settings"]["unrectified"], rig_);
 }
 
 TEST_F(MatchUnrectified, MatricesOfRectifyAreACalibration) {
   const std::string matrices = folder_ / "matrices.yml";
-  ASSERT_EQ(run_vantage({"rectify", left_, right_, "--calibration", rig_, "-o",
-                         folder_ / "rectified", "--matrices", matrices})
-                .exit_code,
-            0);
-  ASSERT_EQ(match(folder_ / "a.pfm", {"--unrectified", rig_}).exit_code, 0);
-  ASSERT_EQ(match(folder_ / "b.pfm", {"--unrectified", matrices}).exit_code, 0);
+  succeeds(run_vantage({"rectify", left_, right_, "--calibration", rig_, "-o",
+                        folder_ / "rectified", "--matrices", matrices}));
+  succeeds(match(folder_ / "a.pfm", {"--unrectified", rig_}));
+  succeeds(match(folder_ / "b.pfm", {"--unrectified", matrices}));
   EXPECT_EQ(read_file(folder_ / "a.pfm"), read_file(folder_ / "b.pfm"));
 }
 
 TEST_F(MatchUnrectified, MapsOnRectifiedPixelsMakeViews) {
-  ASSERT_EQ(match(folder_ / "m.pfm", {"--unrectified", rig_, "--rectified-pixels", "--output-right",
-                                      folder_ / "r.pfm"})
-                .exit_code,
-            0);
-  const ProcessResult view = run_vantage(
-      {"synth", left_, right_, "--calibration", rig_, "--left-disparity", folder_ / "m.pfm",
-       "--right-disparity", folder_ / "r.pfm", "--view", "0.5", "-o", folder_ / "view.png"});
-  EXPECT_EQ(view.exit_code, 0) << view.err;
+  succeeds(match(folder_ / "m.pfm", {"--unrectified", rig_, "--rectified-pixels", "--output-right",
+                                     folder_ / "r.pfm"}));
+  succeeds(run_vantage({"synth", left_, right_, "--calibration", rig_, "--left-disparity",
+                        folder_ / "m.pfm", "--right-disparity", folder_ / "r.pfm", "--view", "0.5",
+                        "-o", folder_ / "view.png"}));
 }
 
 TEST_F(MatchUnrectified, RunMakesTheSame) {
   write_file(folder_ / "list.csv", left_ + "," + right_ + "\n");
-  const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {
-        "run",           "--pairs", folder_ / "list.csv", "-o",  folder_ / out,
-        "--unrectified", rig_,      "--disparities",      "0:9", "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  const auto run = [&](const std::string& out, const Words& more) {
+    return run_vantage(joined({"run", "--pairs", folder_ / "list.csv", "-o", folder_ / out,
+                               "--unrectified", rig_, "--disparities", "0:9", "--quiet"},
+                              more));
   };
   const auto file = [&](const std::string& name) { return read_file(folder_ / name); };
-  ProcessResult result = run("maps", {"--save", "disparity,right-disparity,confidence,unmatched"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  ASSERT_EQ(match(folder_ / "m.pfm",
-                  {"--unrectified", rig_, "--output-right", folder_ / "r.pfm", "--confidence",
-                   folder_ / "c.pfm", "--unmatched", folder_ / "u.png"})
-                .exit_code,
-            0);
+  ProcessResult result =
+      succeeds(run("maps", {"--save", "disparity,right-disparity,confidence,unmatched"}));
+  succeeds(match(folder_ / "m.pfm",
+                 {"--unrectified", rig_, "--output-right", folder_ / "r.pfm", "--confidence",
+                  folder_ / "c.pfm", "--unmatched", folder_ / "u.png"}));
   EXPECT_TRUE(file("maps/disparity/000000.pfm") == file("m.pfm"));
   EXPECT_TRUE(file("maps/right-disparity/000000.pfm") == file("r.pfm"));
   EXPECT_TRUE(file("maps/confidence/000000.pfm") == file("c.pfm"));
   EXPECT_TRUE(file("maps/unmatched/000000.png") == file("u.png"));
 
-  result = run("views", {"--rectified-pixels", "--save", "disparity,right-disparity,views,depth",
-                         "--view", "0.5", "--baseline", "0.1", "--depth-format", "npy"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  ASSERT_EQ(match(folder_ / "m.pfm", {"--unrectified", rig_, "--rectified-pixels", "--output-right",
-                                      folder_ / "r.pfm"})
-                .exit_code,
-            0);
+  result = succeeds(run(
+      "views", words("--rectified-pixels --save disparity,right-disparity,views,depth --view 0.5 "
+                     "--baseline 0.1 --depth-format npy")));
+  succeeds(match(folder_ / "m.pfm", {"--unrectified", rig_, "--rectified-pixels", "--output-right",
+                                     folder_ / "r.pfm"}));
   EXPECT_TRUE(file("views/disparity/000000.pfm") == file("m.pfm"));
   EXPECT_TRUE(file("views/right-disparity/000000.pfm") == file("r.pfm"));
-  ASSERT_EQ(run_vantage({"synth", left_, right_, "--calibration", rig_, "--left-disparity",
-                         folder_ / "m.pfm", "--right-disparity", folder_ / "r.pfm", "--view", "0.5",
-                         "-o", folder_ / "view.png"})
-                .exit_code,
-            0);
+  succeeds(run_vantage({"synth", left_, right_, "--calibration", rig_, "--left-disparity",
+                        folder_ / "m.pfm", "--right-disparity", folder_ / "r.pfm", "--view", "0.5",
+                        "-o", folder_ / "view.png"}));
   EXPECT_TRUE(file("views/views/000000.png") == file("view.png"));
 
-  for (const auto& [more, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"--save", "views", "--view", "0.5"}, "save has views with unrectified"},
-           {{"--save", "depth", "--baseline", "1"}, "save has depth with unrectified"},
-           {{"--calibration", rig_}, "--calibration and --unrectified are both given"},
-           {{"--selection", "symmetric"}, "selection symmetric cannot be used with unrectified"},
-           {{"--temporal-prior", "1"}, "temporal-prior cannot be used with unrectified"},
-           {{"--save", "posterior-mean"}, "posterior-variance cannot be used with unrectified"},
-           {{"--no-tuning"}, "no-tuning has no effect with --unrectified"}}) {
-    result = run("wrong", more);
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_TRUE(is_one_line(result, "run")) << result.err;
-    EXPECT_THAT(result.err, HasSubstr(why));
-  }
+  const std::vector<Refusal> refusals = {
+      {{"--save", "views", "--view", "0.5"}, "save has views with unrectified"},
+      {{"--save", "depth", "--baseline", "1"}, "save has depth with unrectified"},
+      {{"--calibration", rig_}, "--calibration and --unrectified are both given"},
+      {{"--selection", "symmetric"}, "selection symmetric cannot be used with unrectified"},
+      {{"--temporal-prior", "1"}, "temporal-prior cannot be used with unrectified"},
+      {{"--save", "posterior-mean"}, "posterior-variance cannot be used with unrectified"},
+      {{"--no-tuning"}, "no-tuning has no effect with --unrectified"}};
+  expect_refusals("run", folder_.path(), refusals,
+                  [&](const Words& words) { return run("wrong", words); });
 }
 
 TEST_F(MatchUnrectified, RefusesInOneLineAndLeavesNothing) {
-  struct Case {
-    std::vector<std::string> more;
-    std::string why;
-  };
   write_file(folder_ / "wrong.yml", "M1: [1]\n");
-  for (const Case& test : std::vector<Case>{
-           {{"--rectified-pixels"}, "--rectified-pixels has no effect without --unrectified"},
-           {{"--vertical"}, "--vertical cannot be used with --unrectified"},
-           {{"--baselines", "1"}, "--baselines cannot be used with --unrectified"},
-           {{"--disparities-y=-1:1"}, "--disparities-y cannot be used with --unrectified"},
-           {{"--selection", "symmetric"}, "--selection symmetric cannot be used with"},
-           {{"--volume", folder_ / "v.npy"}, "--volume cannot be used with --unrectified"},
-           {{"--posterior-mean", folder_ / "v.npy"}, "cannot be used with --unrectified"},
-           {{"--unrectified", folder_ / "wrong.yml"}, "wrong.yml"},
-           {{"--unrectified", folder_ / "missing.yml"}, "missing.yml"}}) {
-    std::vector<std::string> arguments = {"--unrectified", rig_};
-    if (test.more.front() == "--unrectified" || test.more.front() == "--rectified-pixels") {
-      arguments.clear();
-    }
-    arguments.insert(arguments.end(), test.more.begin(), test.more.end());
-    const ProcessResult result = match(folder_ / "m.pfm", arguments);
-    EXPECT_NE(result.exit_code, 0);
-    EXPECT_TRUE(is_one_line(result, "match"));
-    EXPECT_THAT(result.err, HasSubstr(test.why));
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "m.pfm"));
-  }
+  const std::vector<Refusal> refusals = {
+      {{"--rectified-pixels"}, "--rectified-pixels has no effect without --unrectified"},
+      {{"--vertical"}, "--vertical cannot be used with --unrectified"},
+      {{"--baselines", "1"}, "--baselines cannot be used with --unrectified"},
+      {{"--disparities-y=-1:1"}, "--disparities-y cannot be used with --unrectified"},
+      {{"--selection", "symmetric"}, "--selection symmetric cannot be used with"},
+      {{"--volume", folder_ / "v.npy"}, "--volume cannot be used with --unrectified"},
+      {{"--posterior-mean", folder_ / "v.npy"}, "cannot be used with --unrectified"},
+      {{"--unrectified", folder_ / "wrong.yml"}, "wrong.yml", 1},
+      {{"--unrectified", folder_ / "missing.yml"}, "missing.yml", 1}};
+  expect_refusals("match", folder_.path(), refusals, [&](const Words& words) {
+    const bool has_rig = words[0] != "--unrectified" && words[0] != "--rectified-pixels";
+    return match(folder_ / "m.pfm",
+                 joined(has_rig ? Words{"--unrectified", rig_} : Words(), words));
+  });
 }
 
-}  // namespace match_unrectified_test
-}  // namespace vantage
+}  // namespace vantage::match_unrectified_test

@@ -1,28 +1,17 @@
 // match --volume: what the file and the report say, and what is refused.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-
-#include <filesystem>
-#include <string>
 
 #include "tests/apps/pair_fixture.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace match_volume_test {
-
-using testing::HasSubstr;
+namespace vantage::match_volume_test {
 
 using MatchVolume = PairTest;
 
 TEST_F(MatchVolume, StatesShapeAndCandidates) {
-  const ProcessResult result =
+  succeeds(
       run_vantage({"match", left_, right_, "-o", folder_ / "m.pfm", "--method", "bayes", "--volume",
-                   folder_ / "v.npy", "--report", folder_ / "r.json", "--disparities=-200:9"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const auto report = nlohmann::json::parse(read_file(folder_ / "r.json"))["results"]["volume"];
+                   folder_ / "v.npy", "--report", folder_ / "r.json", "--disparities=-200:9"}));
+  const auto report = read_json(folder_ / "r.json")["results"]["volume"];
   // No pixel of an image 71 columns wide has a disparity below −70.
   EXPECT_EQ(report["shape"], nlohmann::json({53, 71, 80}));
   EXPECT_EQ(report["disparities"], "-70:9");
@@ -35,13 +24,10 @@ TEST_F(MatchVolume, StatesShapeAndCandidates) {
 }
 
 TEST_F(MatchVolume, RowsLevelsAndTransposedImages) {
-  const auto shape = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"--volume", folder_ / "v.npy", "--report",
-                                          folder_ / "r.json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProcessResult result = match(folder_ / "m.npy", arguments);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    return nlohmann::json::parse(read_file(folder_ / "r.json"))["results"]["volume"]["shape"];
+  const auto shape = [&](const Words& more) {
+    succeeds(match(folder_ / "m.npy",
+                   joined({"--volume", folder_ / "v.npy", "--report", folder_ / "r.json"}, more)));
+    return read_json(folder_ / "r.json")["results"]["volume"]["shape"];
   };
   EXPECT_EQ(shape({"--preset", "balanced", "--volume-level", "1"}), nlohmann::json({27, 36, 10}));
   EXPECT_EQ(shape({"--disparities-y=-1:1", "--volume-rows", "7:9", "--volume-kind", "costs"}),
@@ -50,12 +36,9 @@ TEST_F(MatchVolume, RowsLevelsAndTransposedImages) {
 }
 
 TEST_F(MatchVolume, RefusesInOneLineAndLeavesNothing) {
-  const auto expect_refused = [&](const std::vector<std::string>& more, const std::string& why) {
-    const ProcessResult result = match(folder_ / "m.pfm", more);
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_TRUE(is_one_line(result, "match"));
-    EXPECT_THAT(result.err, HasSubstr(why));
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "v.npy"));
+  const auto expect_refused = [&](const Words& more, const std::string& why) {
+    expect_one_line(match(folder_ / "m.pfm", more), 2, "match", why);
+    EXPECT_FALSE(fs::exists(folder_ / "v.npy"));
   };
   const std::string file = folder_ / "v.npy";
   expect_refused({"--volume-level", "1"}, "has no effect without --volume");
@@ -66,11 +49,10 @@ TEST_F(MatchVolume, RefusesInOneLineAndLeavesNothing) {
   // Before the search range, which these images have none of.
   write_photograph(left_, Photograph{Image<std::uint8_t>(70, 53, 1)});
   write_photograph(right_, Photograph{Image<std::uint8_t>(70, 53, 1)});
-  const ProcessResult early =
+  expect_failure(
       run_vantage({"match", left_, right_, "-o", folder_ / "m.pfm", "--volume", file,
-                   "--volume-rows", "5:27", "--preset", "balanced", "--volume-level", "1"});
-  EXPECT_EQ(early.exit_code, 2);
-  EXPECT_THAT(early.err, HasSubstr("expected rows within 0:26"));
+                   "--volume-rows", "5:27", "--preset", "balanced", "--volume-level", "1"}),
+      2, "expected rows within 0:26");
   expect_refused({"--volume", file, "--preset", "realtime", "--search-size", "half"},
                  "expected search-size full");
 }
@@ -78,11 +60,9 @@ TEST_F(MatchVolume, RefusesInOneLineAndLeavesNothing) {
 TEST_F(MatchVolume, MeanAndVarianceOfProbabilities) {
   const std::string mean = folder_ / "mean.pfm";
   const std::string variance = folder_ / "variance.pfm";
-  ASSERT_EQ(
+  succeeds(
       match(folder_ / "m.pfm", {"--method", "bayes", "--posterior-mean", mean,
-                                "--posterior-variance", variance, "--raw", "--subpixel", "none"})
-          .exit_code,
-      0);
+                                "--posterior-variance", variance, "--raw", "--subpixel", "none"}));
   const DisparityMap winners = read_disparity(folder_ / "m.pfm");
   const DisparityMap means = read_disparity(mean);
   const DisparityMap variances = read_disparity(variance);
@@ -96,14 +76,10 @@ TEST_F(MatchVolume, MeanAndVarianceOfProbabilities) {
     }
   }
   EXPECT_GT(certain, 71 * 53 / 2);
-  EXPECT_EQ(match(folder_ / "n.pfm", {"--method", "bayes", "--vertical", "--posterior-mean", mean})
-                .exit_code,
-            0);
+  succeeds(match(folder_ / "n.pfm", {"--method", "bayes", "--vertical", "--posterior-mean", mean}));
   EXPECT_EQ(read_disparity(mean).width(), 71);
-  const ProcessResult refused =
-      match(folder_ / "m.pfm", {"--method", "ssd", "--posterior-mean", mean});
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("only the aggregation bayes has p(d)"));
+  expect_failure(match(folder_ / "m.pfm", {"--method", "ssd", "--posterior-mean", mean}), 2,
+                 "only the aggregation bayes has p(d)");
 }
 
 TEST_F(MatchVolume, SymmetricSelectionSaysWhatItWouldKeep) {
@@ -117,14 +93,12 @@ TEST_F(MatchVolume, SymmetricSelectionSaysWhatItWouldKeep) {
     }
   }
   write_photograph(folder_ / "large.png", {std::move(image)});
-  const ProcessResult result =
+  expect_one_line(
       run_vantage({"match", folder_ / "large.png", folder_ / "large.png", "-o", folder_ / "m.pfm",
-                   "--disparities=0:500", "--selection", "symmetric", "--memory", "80M"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "match")) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("symmetric selection, which keeps 175 MiB of energies (600x300 "
-                                    "pixels, 501 candidates)"));
+                   "--disparities=0:500", "--selection", "symmetric", "--memory", "80M"}),
+      1, "match",
+      "symmetric selection, which keeps 175 MiB of energies (600x300 "
+      "pixels, 501 candidates)");
 }
 
-}  // namespace match_volume_test
-}  // namespace vantage
+}  // namespace vantage::match_volume_test

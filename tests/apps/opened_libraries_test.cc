@@ -1,35 +1,19 @@
 // Which shared libraries commands open: those that take long only where they are needed.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
 #include <set>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "tests/apps/pair_fixture.h"
-#include "tests/apps/vantage_process.h"
 
-namespace vantage {
-namespace opened_libraries_test {
-
-namespace fs = std::filesystem;
-using testing::Contains;
-using testing::Each;
-using testing::Not;
-using testing::StartsWith;
+namespace vantage::opened_libraries_test {
 
 class OpenedLibraries : public PairTest {
  protected:
   /// Names of the files that the dynamic linker initialises while the program runs with these
   /// arguments, as it tells itself.
-  [[nodiscard]] std::set<std::string> opened_by(const std::vector<std::string>& arguments) const {
+  [[nodiscard]] std::set<std::string> opened_by(const Words& arguments) const {
     const TemporaryFolder log;
-    const ProcessResult result =
-        run_vantage(arguments, {"LD_DEBUG=libs", "LD_DEBUG_OUTPUT=" + log / "linker"});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run_vantage(arguments, {"LD_DEBUG=libs", "LD_DEBUG_OUTPUT=" + log / "linker"}));
     std::set<std::string> names;
     for (const fs::directory_entry& file : fs::directory_iterator(log.path())) {
       std::istringstream lines(read_file(file.path()));
@@ -96,5 +80,4 @@ TEST_F(OpenedLibraries, VideoCodecsButNoImageCodecsForVideos) {
   EXPECT_THAT(names, Each(Not(StartsWith("libopencv_imgcodecs.so"))));
 }
 
-}  // namespace opened_libraries_test
-}  // namespace vantage
+}  // namespace vantage::opened_libraries_test

@@ -1,24 +1,11 @@
 // Outputs that are inputs: refused before anything is written, whatever named the input.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "apps/commands/commands.h"
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
-#include "tests/test_paths.h"
 
-namespace vantage {
-namespace output_checks_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using Words = std::vector<std::string>;
+namespace vantage::output_checks_test {
 
 /// A command line and the files that it reads, each by itself.
 struct Case {
@@ -52,9 +39,7 @@ class OutputChecks : public RunTest {
   /// Success when `command` is refused and all of the folder is as it was.
   void expect_refused(const Words& command, const std::string& says) const {
     const FolderContent before = results_in(folder_.path());
-    const ProcessResult result = run_vantage(command);
-    EXPECT_EQ(result.exit_code, 2) << command.front() << ": " << result.err;
-    EXPECT_THAT(result.err, HasSubstr(says)) << testing::PrintToString(command);
+    expect_failure(run_vantage(command), 2, says);
     EXPECT_TRUE(same_files(results_in(folder_.path()), before)) << command.front();
   }
 
@@ -153,7 +138,7 @@ TEST_F(OutputChecks, ResultsDoNotLandAmongTheFramesOfAList) {
       joined({"run", "--left", at("left"), "--right", at("right"), "-o", at("more")}, quick),
       "would write into '" + at("more/preview") + "'");
   // What goes with the journal.
-  ASSERT_EQ(run(at("begun"), {"--frames", "0-1"}).exit_code, 0);
+  succeeds(run(at("begun"), {"--frames", "0-1"}));
   fs::copy_file(at("poses.toml"), at("begun/.vantage/poses.toml"));
   expect_refused(arguments(at("begun"), {"--overwrite", "--pose", at("begun/.vantage/poses.toml")}),
                  "--output would write into");
@@ -172,10 +157,8 @@ TEST_F(OutputChecks, RectifiedImagesDoNotReplacePhotographs) {
 }
 
 TEST_F(OutputChecks, NothingOfASceneIsReplaced) {
-  ASSERT_EQ(run_vantage({"scene", "build", "--positions", at("places.csv"), "-o", at("scene"),
-                         "--disparities=0:5", "--method", "ssd", "--quiet"})
-                .exit_code,
-            0);
+  succeeds(run_vantage({"scene", "build", "--positions", at("places.csv"), "-o", at("scene"),
+                        "--disparities=0:5", "--method", "ssd", "--quiet"}));
   for (const std::string name :
        {"scene/scene.json", "left/000000.png", "scene/maps/000-001-first.pfm",
         "scene/maps/000-001-second-unmatched.png"}) {
@@ -188,5 +171,4 @@ TEST_F(OutputChecks, NothingOfASceneIsReplaced) {
                  "--output would write into");
 }
 
-}  // namespace output_checks_test
-}  // namespace vantage
+}  // namespace vantage::output_checks_test

@@ -1,15 +1,9 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-
 #include "engine/generation/book_pairs.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/disparity_io.h"
 #include "tests/apps/vantage_process.h"
-#include "tests/temporary_folder.h"
 
 namespace vantage {
 
@@ -26,11 +20,8 @@ class PairTest : public testing::Test {
   }
 
   /// `match LEFT RIGHT -o OUT --disparities=0:9 …`
-  [[nodiscard]] ProcessResult match(const std::string& out,
-                                    const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"match", left_, right_, "-o", out, "--disparities=0:9"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult match(const std::string& out, const Words& more = {}) const {
+    return run_vantage(joined({"match", left_, right_, "-o", out, "--disparities=0:9"}, more));
   }
 
   /// Share of the pixels that are not occluded and are off by more than half a pixel.
@@ -54,17 +45,5 @@ class PairTest : public testing::Test {
   std::string left_ = folder_ / "left.png";
   std::string right_ = folder_ / "right.png";
 };
-
-/// One line on stderr that begins with "vantage COMMAND: ".
-inline testing::AssertionResult is_one_line(const ProcessResult& result,
-                                            const std::string& command) {
-  const std::string& err = result.err;
-  const std::string begin = command.empty() ? "vantage: " : "vantage " + command + ": ";
-  if (err.rfind(begin, 0) == 0 && err.find('\n') == err.size() - 1) {
-    return testing::AssertionSuccess();
-  }
-  return testing::AssertionFailure()
-         << "stderr is not one line that begins with '" << begin << "': " << err;
-}
 
 }  // namespace vantage

@@ -1,31 +1,17 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/io/images/photograph_io.h"
 #include "tests/apps/vantage_process.h"
-#include "tests/temporary_folder.h"
 
-namespace vantage {
-namespace posed_scene_test {
-
-namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::HasSubstr;
+namespace vantage::posed_scene_test {
 
 /// Four hand-held cameras about a square, turned by some degrees, with their poses as a COLMAP
 /// model in DIR/model; a fifth one between them for the truth.
@@ -91,17 +77,13 @@ class PosedScene : public testing::Test {
     write_file(folder + "/images.txt", images);
   }
 
-  [[nodiscard]] ProcessResult build(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments = {"scene",    "build",    "-o",
-                                          place_,     "--images", images_,
-                                          "--preset", "fast",     "--disparities=0:14"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult build(const Words& more = {}) const {
+    return run_vantage(joined({"scene", "build", "-o", place_, "--images", images_, "--preset",
+                               "fast", "--disparities=0:14"},
+                              more));
   }
-  [[nodiscard]] ProcessResult view(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments = {"scene", "view", place_, "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+  [[nodiscard]] ProcessResult view(const Words& more) const {
+    return run_vantage(joined({"scene", "view", place_, "--quiet"}, more));
   }
   void write_pose(const PosedCamera& at) const {
     const Eigen::Matrix3d& r = at.rotation;
@@ -126,17 +108,14 @@ class PosedScene : public testing::Test {
 };
 
 TEST_F(PosedScene, ViewsOfAColmapModelComeFromSeveralImages) {
-  const ProcessResult built = build({"--poses", model_});
-  ASSERT_EQ(built.exit_code, 0) << built.err;
+  succeeds(build({"--poses", model_}));
   EXPECT_THAT(run_vantage({"scene", "info", place_}).out,
               AllOf(HasSubstr("images 4, 160x120 pixels"), HasSubstr("0 refused")));
 
   const PosedCamera wanted = camera({0.5, 0.5, 0.05}, turn(0.2, 0.3, 1));
   write_pose(wanted);
   const auto psnr_of = [&](const std::string& sources) {
-    const ProcessResult seen =
-        view({"--pose", pose_, "--sources", sources, "-o", folder_ / "v.png"});
-    EXPECT_EQ(seen.exit_code, 0) << seen.err;
+    succeeds(view({"--pose", pose_, "--sources", sources, "-o", folder_ / "v.png"}));
     return psnr(folder_ / "v.png", wanted);
   };
   const double of_two = psnr_of("2");
@@ -145,9 +124,9 @@ TEST_F(PosedScene, ViewsOfAColmapModelComeFromSeveralImages) {
   EXPECT_GT(of_four, of_two + 0.5);
 
   // At an image the view is that image, but for what its map does not know.
-  ASSERT_EQ(view({"--between", "1:2:0", "-o", folder_ / "same.png"}).exit_code, 0);
+  succeeds(view({"--between", "1:2:0", "-o", folder_ / "same.png"}));
   EXPECT_GT(psnr(folder_ / "same.png", cameras_[1]), 30);
-  ASSERT_EQ(view({"--sweep", "0:3:3", "-o", folder_ / "s%d.png"}).exit_code, 0);
+  succeeds(view({"--sweep", "0:3:3", "-o", folder_ / "s%d.png"}));
   EXPECT_TRUE(fs::exists(folder_ / "s2.png"));
 }
 
@@ -167,10 +146,9 @@ std::vector<Eigen::Vector3d> points_in(const std::string& file) {
 }
 
 TEST_F(PosedScene, CloudOfAColmapModelLiesOnTheSurfaces) {
-  ASSERT_EQ(build({"--poses", model_}).exit_code, 0);
+  succeeds(build({"--poses", model_}));
   const std::string file = folder_ / "cloud.ply";
-  const ProcessResult fused = run_vantage({"scene", "cloud", place_, "-o", file, "--threads", "1"});
-  ASSERT_EQ(fused.exit_code, 0) << fused.err;
+  succeeds(run_vantage({"scene", "cloud", place_, "-o", file, "--threads", "1"}));
   std::vector<DisparityMap> truths;
   for (const PosedCamera& camera : cameras_) {
     truths.push_back(scene_.render(camera, 0).disparity);
@@ -197,12 +175,11 @@ TEST_F(PosedScene, CloudOfAColmapModelLiesOnTheSurfaces) {
   EXPECT_GT(near, static_cast<int>(points.size()) * 93 / 100);
 
   const std::string again = folder_ / "again.ply";
-  ASSERT_EQ(run_vantage({"scene", "cloud", place_, "-o", again, "--threads", "2"}).exit_code, 0);
+  succeeds(run_vantage({"scene", "cloud", place_, "-o", again, "--threads", "2"}));
   EXPECT_EQ(read_file(again), read_file(file));
-  const auto problem = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"scene", "cloud", place_, "-o", folder_ / "wrong.ply"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProcessResult result = run_vantage(arguments);
+  const auto problem = [&](const Words& more) {
+    const ProcessResult result =
+        run_vantage(joined({"scene", "cloud", place_, "-o", folder_ / "wrong.ply"}, more));
     EXPECT_NE(result.exit_code, 0);
     EXPECT_FALSE(fs::exists(folder_ / "wrong.ply"));
     return result.err;
@@ -216,9 +193,8 @@ TEST_F(PosedScene, CloudOfAColmapModelLiesOnTheSurfaces) {
 TEST_F(PosedScene, WrongPosesAreCorrectedAndHopelessEdgesLeftOut) {
   const std::string noisy = folder_ / "noisy";
   write_model(noisy, {0, 0.5, 0, 0});  // a pixel and a half
-  const ProcessResult built = build({"--poses", noisy, "--report", folder_ / "build.json"});
-  ASSERT_EQ(built.exit_code, 0) << built.err;
-  const auto results = nlohmann::json::parse(read_file(folder_ / "build.json")).at("results");
+  succeeds(build({"--poses", noisy, "--report", folder_ / "build.json"}));
+  const auto results = read_json(folder_ / "build.json").at("results");
   EXPECT_GE(results.at("poses_corrected"), 1);
   for (const auto& edge : results.at("edges_matched")) {
     if (edge.contains("pose_corrected_degrees")) {
@@ -228,9 +204,8 @@ TEST_F(PosedScene, WrongPosesAreCorrectedAndHopelessEdgesLeftOut) {
   }
 
   write_model(noisy, {0, 0, 0, 25});
-  const ProcessResult refused = build({"--poses", noisy});
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("3.png: all its edges were refused, expected at least one"));
+  expect_failure(build({"--poses", noisy}), 1,
+                 "3.png: all its edges were refused, expected at least one");
 }
 
 TEST_F(PosedScene, TumPosesBelongToImagesNamedAfterTheirTimes) {
@@ -250,12 +225,11 @@ TEST_F(PosedScene, TumPosesBelongToImagesNamedAfterTheirTimes) {
              fmt::format("{} {} {} {}\n", k(0, 0), k(1, 1), k(0, 2), k(1, 2)));
   EXPECT_THAT(build({"--poses", folder_ / "tum.txt"}).err, HasSubstr("expected --intrinsics too"));
   const ProcessResult built =
-      build({"--poses", folder_ / "tum.txt", "--intrinsics", folder_ / "camera.txt"});
-  ASSERT_EQ(built.exit_code, 0) << built.err;
+      succeeds(build({"--poses", folder_ / "tum.txt", "--intrinsics", folder_ / "camera.txt"}));
   EXPECT_THAT(built.err, HasSubstr("3 images, 3 edges"));
   EXPECT_THAT(built.err, HasSubstr("note: 1 of 4 images are left out: "));
   EXPECT_THAT(read_file(place_ + "/scene.json"),
-              testing::Not(HasSubstr("corrected_degrees")));  // the poses fit
+              Not(HasSubstr("corrected_degrees")));  // the poses fit
 
   write_trajectory(100);
   EXPECT_THAT(build({"--poses", folder_ / "tum.txt", "--intrinsics", folder_ / "camera.txt"}).err,
@@ -263,7 +237,7 @@ TEST_F(PosedScene, TumPosesBelongToImagesNamedAfterTheirTimes) {
 }
 
 TEST_F(PosedScene, SaysWhatIsWrong) {
-  const auto problem = [&](const std::vector<std::string>& more) {
+  const auto problem = [&](const Words& more) {
     const ProcessResult result = build(more);
     EXPECT_NE(result.exit_code, 0);
     return result.err;
@@ -280,5 +254,4 @@ TEST_F(PosedScene, SaysWhatIsWrong) {
   EXPECT_THAT(problem({"--poses", model_}), HasSubstr("expected 320×240 as its camera"));
 }
 
-}  // namespace posed_scene_test
-}  // namespace vantage
+}  // namespace vantage::posed_scene_test

@@ -2,8 +2,6 @@
 
 #include <cstdlib>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "tests/apps/run_fixture.h"
 #include "tests/test_paths.h"
@@ -11,8 +9,7 @@
 namespace vantage {
 
 /// Environment in which `library` is loaded before all others, with `variables`.
-inline std::vector<std::string> preloaded(const std::string& library,
-                                          const std::vector<std::string>& variables) {
+inline Words preloaded(const std::string& library, const Words& variables) {
   const char* options = std::getenv("ASAN_OPTIONS");
   // The sanitizer wants to be the first library, but these do without its functions.
   return joined(
@@ -23,15 +20,14 @@ inline std::vector<std::string> preloaded(const std::string& library,
 
 /// Environment in which something happens at call number `call` of those that change files below
 /// `folder`: "KILL" ends the process before it, "FULL" is a full disk from then on.
-inline std::vector<std::string> fault_at(const std::string& fault, int call,
-                                         const std::string& folder) {
+inline Words fault_at(const std::string& fault, int call, const std::string& folder) {
   return preloaded(test_paths::io_faults(), {"IO_FAULTS_FOLDER=" + folder,
                                              "IO_FAULTS_" + fault + "=" + std::to_string(call)});
 }
 
 /// What the calls that change files below a folder were, in order: "rename", "write", …
 struct FileCalls {
-  std::vector<std::string> names;
+  Words names;
 
   [[nodiscard]] int count() const { return static_cast<int>(names.size()); }
   /// Numbers (from 1) of those of this name.
@@ -45,7 +41,7 @@ struct FileCalls {
     return numbers;
   }
   /// Numbers of the first and the last of each of these names.
-  [[nodiscard]] std::vector<int> ends_of(const std::vector<std::string>& wanted) const {
+  [[nodiscard]] std::vector<int> ends_of(const Words& wanted) const {
     std::vector<int> ends;
     for (const std::string& name : wanted) {
       if (const std::vector<int> numbers = numbers_of(name); !numbers.empty()) {
@@ -57,11 +53,10 @@ struct FileCalls {
 };
 
 /// Runs the program to its end and notes its calls that change files below `folder`.
-inline FileCalls calls_of(const std::vector<std::string>& arguments, const std::string& folder) {
+inline FileCalls calls_of(const Words& arguments, const std::string& folder) {
   const TemporaryFolder notes;
-  const ProcessResult result = run_vantage(
-      arguments, joined(fault_at("KILL", -1, folder), {"IO_FAULTS_COUNT=" + (notes / "count")}));
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  succeeds(run_vantage(
+      arguments, joined(fault_at("KILL", -1, folder), {"IO_FAULTS_COUNT=" + (notes / "count")})));
   std::istringstream lines(read_file(notes / "count"));
   std::size_t count = 0;
   std::string name;

@@ -1,22 +1,13 @@
 // Runs that rectify their pairs first.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
 #include <fstream>
-#include <string>
 
 #include "engine/image/stereo_packing.h"
-#include "engine/io/images/photograph_io.h"
 #include "engine/rectification/rectifier.h"
 #include "tests/apps/run_fixture.h"
 
-namespace vantage {
-namespace run_calibration_test {
-
-using testing::HasSubstr;
+namespace vantage::run_calibration_test {
 
 constexpr int kFrame = 3;
 
@@ -34,17 +25,15 @@ class RunCalibration : public RunTest {
  protected:
   void SetUp() override { std::ofstream(rig_) << kRig; }
 
-  [[nodiscard]] std::vector<std::string> with_rig(const std::vector<std::string>& more) const {
+  [[nodiscard]] Words with_rig(const Words& more) const {
     return joined({"--calibration", rig_}, more);
   }
 
   /// A frame as the run saw it: the views at its cameras are the photographs themselves.
-  [[nodiscard]] std::array<Image<std::uint8_t>, 2> seen_by_run(
-      const std::string& out, const std::vector<std::string>& more) const {
-    const ProcessResult result =
-        run(out, joined(more, {"--save", "stereo", "--stereo-views", "0,1", "--frames",
-                               std::to_string(kFrame) + "-" + std::to_string(kFrame)}));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+  [[nodiscard]] std::array<Image<std::uint8_t>, 2> seen_by_run(const std::string& out,
+                                                               const Words& more) const {
+    succeeds(run(out, joined(more, {"--save", "stereo", "--stereo-views", "0,1", "--frames",
+                                    std::to_string(kFrame) + "-" + std::to_string(kFrame)})));
     Photograph left;
     Photograph right;
     unpack_stereo(read_photograph(out + "/stereo/" + frame_file(kFrame)), {}, left, right);
@@ -85,24 +74,19 @@ using InputRunCalibration = RunCalibration;
 
 TEST_F(InputRunCalibration, RefusesAnOutlineThatCannotBeKept) {
   for (const auto& [more, says] :
-       {std::pair{std::vector<std::string>{"--kept-outline", "1"},
+       {std::pair{Words{"--kept-outline", "1"},
                   "--kept-outline has no effect without --calibration"},
         {with_rig({"--kept-outline", "1.5"}), "kept-outline is 1.5, expected 0 to 1"}}) {
-    const ProcessResult result = run(folder_ / "out", joined(more, {"--quiet"}));
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr(says));
+    expect_one_line(run(folder_ / "out", joined(more, {"--quiet"})), 2, "run", says);
   }
 }
 
 // What a frame becomes depends on it, so a run must not go on with another one.
 TEST_F(RunCalibration, AnotherOutlineIsAnotherRun) {
   const std::string out = folder_ / "out";
-  ASSERT_EQ(run(out, with_rig({"--frames", "0-1"})).exit_code, 0);
-  const ProcessResult other = run(out, with_rig({"--kept-outline", "1", "--resume", "--quiet"}));
-  EXPECT_EQ(other.exit_code, 1);
-  EXPECT_THAT(other.err, HasSubstr("kept-outline"));
+  succeeds(run(out, with_rig({"--frames", "0-1"})));
+  expect_failure(run(out, with_rig({"--kept-outline", "1", "--resume", "--quiet"})), 1,
+                 "kept-outline");
 }
 
-}  // namespace run_calibration_test
-}  // namespace vantage
+}  // namespace vantage::run_calibration_test

@@ -1,22 +1,16 @@
 // Sequences of more than two cameras: each frame as 'vantage match' matches it.
-#include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
-#include <string>
-#include <vector>
 
-#include "tests/apps/run_fixture.h"
+#include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace run_cameras_test {
+namespace vantage::run_cameras_test {
 
 class RunCamerasTest : public RunTest {
  protected:
   static constexpr int kFramesUsed = 4;
 
   RunCamerasTest() {
-    namespace fs = std::filesystem;
     for (const std::string& side : {left_, right_, third_}) {
       fs::create_directories(side);
     }
@@ -28,15 +22,13 @@ class RunCamerasTest : public RunTest {
   }
 
   /// With the default preset.
-  [[nodiscard]] ProcessResult run(const std::string& out,
-                                  const std::vector<std::string>& more) const {
+  [[nodiscard]] ProcessResult run(const std::string& out, const Words& more) const {
     return run_vantage(joined(
         {"run", "--left", left_, "--right", right_, "-o", out, "--disparities=0:9", "--quiet"},
         more));
   }
   /// Of the first frames.
-  [[nodiscard]] ProcessResult run_three(const std::string& out,
-                                        const std::vector<std::string>& more) const {
+  [[nodiscard]] ProcessResult run_three(const std::string& out, const Words& more) const {
     return run(out, joined({"--more", third_, "--baselines=1,-0.7", "--frames", "0-3",
                             "--chunk-frames", "2"},
                            more));
@@ -48,16 +40,13 @@ class RunCamerasTest : public RunTest {
 TEST_F(RunCamerasTest, FramesAreWhatMatchMakesOfThem) {
   for (const std::string preset : {"realtime", "fast", "balanced", "quality"}) {
     const std::string out = folder_ / preset;
-    const ProcessResult result =
-        run_three(out, {"--preset", preset, "--save", "disparity,confidence,unmatched"});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run_three(out, {"--preset", preset, "--save", "disparity,confidence,unmatched"}));
     for (const int frame : {0, 3}) {
       const std::string name = frame_file(frame);
       const std::string map = folder_ / (preset + ".pfm");
-      const ProcessResult matched =
+      succeeds(
           run_vantage({"match", left_ + "/" + name, right_ + "/" + name, third_ + "/" + name, "-o",
-                       map, "--baselines=1,-0.7", "--disparities=0:9", "--preset", preset});
-      ASSERT_EQ(matched.exit_code, 0) << matched.err;
+                       map, "--baselines=1,-0.7", "--disparities=0:9", "--preset", preset}));
       EXPECT_TRUE(results_in(out)["disparity/" + frame_file(frame, "pfm")] == read_file(map))
           << preset << " frame " << frame;
     }
@@ -65,17 +54,15 @@ TEST_F(RunCamerasTest, FramesAreWhatMatchMakesOfThem) {
 }
 
 TEST_F(RunCamerasTest, PartsAndResumingChangeNothing) {
-  const std::vector<std::string> outputs = {"--save", "disparity,right-disparity,views", "--view",
-                                            "0.5"};
-  ASSERT_EQ(run_three(folder_ / "whole", outputs).exit_code, 0);
+  const Words outputs = {"--save", "disparity,right-disparity,views", "--view", "0.5"};
+  succeeds(run_three(folder_ / "whole", outputs));
   const std::string parts = folder_ / "parts";
-  ASSERT_EQ(run_three(parts, joined(outputs, {"--shard", "2/2"})).exit_code, 0);
-  ASSERT_EQ(run_three(parts, joined(outputs, {"--shard", "1/2", "--threads", "1"})).exit_code, 0);
+  succeeds(run_three(parts, joined(outputs, {"--shard", "2/2"})));
+  succeeds(run_three(parts, joined(outputs, {"--shard", "1/2", "--threads", "1"})));
   EXPECT_TRUE(same_files(results_in(parts), results_in(folder_ / "whole")));
 
-  std::filesystem::remove(parts + "/disparity/000002.pfm");
-  const ProcessResult resumed = run_vantage({"run", "-o", parts, "--resume", "--frames", "0-3"});
-  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  fs::remove(parts + "/disparity/000002.pfm");
+  succeeds(run_vantage({"run", "-o", parts, "--resume", "--frames", "0-3"}));
   EXPECT_TRUE(same_files(results_in(parts), results_in(folder_ / "whole")));
 
   // Another position of a camera is another run.
@@ -85,32 +72,27 @@ TEST_F(RunCamerasTest, PartsAndResumingChangeNothing) {
 }
 
 TEST_F(RunCamerasTest, RightMapIsOfTheRightImage) {
-  ASSERT_EQ(run_three(folder_ / "out", {"--reference", "right"}).exit_code, 0);
+  succeeds(run_three(folder_ / "out", {"--reference", "right"}));
   // From the right camera, the left one is at -1, the third one at -1.7.
   const std::string map = folder_ / "map.pfm";
   const std::string name = frame_file(1);
-  ASSERT_EQ(run_vantage({"match", right_ + "/" + name, left_ + "/" + name, third_ + "/" + name,
-                         "-o", map, "--baselines=-1,-1.7", "--disparities=0:9"})
-                .exit_code,
-            0);
+  succeeds(run_vantage({"match", right_ + "/" + name, left_ + "/" + name, third_ + "/" + name, "-o",
+                        map, "--baselines=-1,-1.7", "--disparities=0:9"}));
   EXPECT_TRUE(results_in(folder_ / "out")["disparity/000001.pfm"] == read_file(map));
 }
 
 TEST_F(RunCamerasTest, ConfigurationFileAndReportNameTheCameras) {
-  const ProcessResult printed = run_three(folder_ / "out", {"--print-config"});
-  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  const ProcessResult printed = succeeds(run_three(folder_ / "out", {"--print-config"}));
   std::ofstream(folder_ / "job.toml") << printed.out;
   const std::string report = folder_ / "report.json";
-  const ProcessResult result =
-      run_vantage({"run", "--config", folder_ / "job.toml", "--report", report});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const nlohmann::json settings = read_report(report)["settings"];
+  succeeds(run_vantage({"run", "--config", folder_ / "job.toml", "--report", report}));
+  const nlohmann::json settings = read_json(report)["settings"];
   EXPECT_EQ(settings["baselines"], (std::vector<double>{1, -0.7}));
-  EXPECT_EQ(settings["more"], std::vector<std::string>{third_});
+  EXPECT_EQ(settings["more"], Words{third_});
 }
 
 TEST_F(RunCamerasTest, ShorterSequencesAreReported) {
-  std::filesystem::remove(third_ + "/" + frame_file(kFrames - 1));
+  fs::remove(third_ + "/" + frame_file(kFrames - 1));
   const ProcessResult result = run(folder_ / "out", {"--more", third_, "--baselines=1,2"});
   EXPECT_NE(result.exit_code, 0);
   EXPECT_NE(result.err.find("camera 3 has frames for 19 pairs, but the first two cameras have 20"),
@@ -119,31 +101,22 @@ TEST_F(RunCamerasTest, ShorterSequencesAreReported) {
 }
 
 TEST_F(RunCamerasTest, RefusesWhatDoesNotGoTogether) {
-  struct Case {
-    std::vector<std::string> arguments;
-    std::string message;
-  };
-  for (const Case& test : std::vector<Case>{
-           {{"--more", third_}, "--baselines has 0 numbers, expected 2"},
-           {{"--more", third_, "--baselines", "1"}, "--baselines has 1 number, expected 2"},
-           {{"--more", third_, "--baselines=-1,2"}, "right camera is -1, expected a positive"},
-           {{"--more", third_, "--baselines", "2,2"}, "are both 2, expected different ones"},
-           {{"--more", third_, "--baselines", "1,2", "--selection", "symmetric"},
-            "a symmetric solution is of two images"},
-           {{"--more", third_, "--baselines", "1,2", "--preset", "realtime", "--reuse", "frame"},
-            "expected none with baselines"},
-           {{"--more", third_, "--baselines", "1,2", "--preset", "realtime", "--search-size",
-             "half"},
-            "--search-size has no effect with several images"},
-           {{"--more", third_, "--baselines", "1,2", "--calibration", "rig.yml"},
-            "--calibration cannot be used with --baselines"},
-           {{"--more", folder_ / "nothing", "--baselines", "1,2"}, "nothing"}}) {
-    const ProcessResult result = run(folder_ / "out", test.arguments);
-    EXPECT_NE(result.exit_code, 0);
-    EXPECT_NE(result.err.find(test.message), std::string::npos) << result.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
-  }
+  const std::vector<Refusal> refusals = {
+      {{"--more", third_}, "--baselines has 0 numbers, expected 2"},
+      {{"--more", third_, "--baselines", "1"}, "--baselines has 1 number, expected 2"},
+      {{"--more", third_, "--baselines=-1,2"}, "right camera is -1, expected a positive"},
+      {{"--more", third_, "--baselines", "2,2"}, "are both 2, expected different ones"},
+      {{"--more", third_, "--baselines", "1,2", "--selection", "symmetric"},
+       "a symmetric solution is of two images"},
+      {{"--more", third_, "--baselines", "1,2", "--preset", "realtime", "--reuse", "frame"},
+       "expected none with baselines"},
+      {{"--more", third_, "--baselines", "1,2", "--preset", "realtime", "--search-size", "half"},
+       "--search-size has no effect with several images"},
+      {{"--more", third_, "--baselines", "1,2", "--calibration", "rig.yml"},
+       "--calibration cannot be used with --baselines"},
+      {{"--more", folder_ / "nothing", "--baselines", "1,2"}, "nothing"}};
+  expect_refusals("run", folder_.path(), refusals,
+                  [&](const Words& words) { return run(folder_ / "out", words); });
 }
 
-}  // namespace run_cameras_test
-}  // namespace vantage
+}  // namespace vantage::run_cameras_test

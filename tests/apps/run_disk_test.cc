@@ -1,7 +1,5 @@
 // Runs whose results cannot be written.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/mount.h>
 
 #include <chrono>
@@ -9,17 +7,9 @@
 #include <thread>
 
 #include "tests/apps/preloaded.h"
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace run_disk_test {
-
-namespace fs = std::filesystem;
-using testing::AnyOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::StartsWith;
+namespace vantage::run_disk_test {
 
 /// A file system of its own in a folder.
 class SmallDisk {
@@ -54,9 +44,7 @@ class RunDisk : public RunTest {
   /// Fails, tells why in one line, and has kept what was finished.
   void expect_full(const ProcessResult& result, const std::string& out,
                    const FolderContent& expected) const {
-    EXPECT_EQ(result.exit_code, 1) << result.err;
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr("o space left on device"));
+    expect_one_line(result, 1, "run", "o space left on device");
     EXPECT_THAT(result.err, HasSubstr(out));
     EXPECT_THAT(leftovers_in(out), IsEmpty());
     for (const auto& [name, bytes] : results_in(out)) {
@@ -96,7 +84,7 @@ TEST_F(RunDisk, FullInTheMiddle) {
   expect_full(run(out, {"--quiet", "--resume", "--keep-going"}), out, expected);
   EXPECT_THAT(journalled_frames(out, true), IsEmpty());
   disk.resize(1 << 20);
-  EXPECT_EQ(run(out, {"--quiet", "--resume"}).exit_code, 0);
+  succeeds(run(out, {"--quiet", "--resume"}));
   EXPECT_TRUE(same_files(results_in(out), expected));
 }
 
@@ -117,8 +105,7 @@ TEST_F(SlowRunDisk, FullWhileVideosAreWrittenOrJoined) {
     const ProcessResult result = run(out, joined(kVideoOutputs, {"--quiet"}));
     expect_full(result, out, expected);
     disk.resize(4 << 20);
-    const ProcessResult resumed = run(out, joined(kVideoOutputs, {"--resume"}));
-    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    succeeds(run(out, joined(kVideoOutputs, {"--resume"})));
     EXPECT_TRUE(same_files(results_in(out), expected)) << share;
     EXPECT_THAT(leftovers_in(out), IsEmpty());
     fs::remove_all(out);
@@ -148,8 +135,7 @@ TEST_F(SlowRunDisk, FullFromAnyCallOn) {
       continue;
     }
     expect_full(result, out, expected);
-    const ProcessResult resumed = run(out, joined(kVideoOutputs, {"--resume"}));
-    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    succeeds(run(out, joined(kVideoOutputs, {"--resume"})));
     EXPECT_TRUE(same_files(results_in(out), expected));
   }
 }
@@ -164,9 +150,7 @@ TEST_F(RunDisk, AReadOnlyFolderIsOneLine) {
     disk.make_read_only();
   }
   const ProcessResult result = run(out, {"--quiet"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
-  EXPECT_THAT(result.err, HasSubstr(out));
+  expect_one_line(result, 1, "run", out);
   EXPECT_THAT(result.err,
               AnyOf(HasSubstr("Read-only file system"), HasSubstr("Permission denied")));
   if (by_rights) {
@@ -175,14 +159,11 @@ TEST_F(RunDisk, AReadOnlyFolderIsOneLine) {
   }
   // A run that has begun keeps what it has.
   disk.make_writable();
-  EXPECT_EQ(run(out, {"--frames", "0-4"}).exit_code, 0);
+  succeeds(run(out, {"--frames", "0-4"}));
   disk.make_read_only();
-  const ProcessResult again = run(out, {"--quiet", "--resume"});
-  EXPECT_EQ(again.exit_code, 1);
-  EXPECT_TRUE(is_one_line(again, "run"));
-  EXPECT_THAT(again.err, HasSubstr("Read-only file system"));
+  expect_one_line(run(out, {"--quiet", "--resume"}), 1, "run", "Read-only file system");
   disk.make_writable();
-  EXPECT_EQ(run(out, {"--resume"}).exit_code, 0);
+  succeeds(run(out, {"--resume"}));
   EXPECT_TRUE(same_files(results_in(out), undisturbed({})));
 }
 
@@ -194,10 +175,7 @@ TEST_F(RunDisk, FilesWhereFoldersHaveToBe) {
   write_file(folder_ / "other/.vantage", "mine");
   for (const std::string& out :
        {folder_ / "file", folder_ / "file/below", folder_ / "out", folder_ / "other"}) {
-    const ProcessResult result = run(out, {"--quiet"});
-    EXPECT_EQ(result.exit_code, 1) << out;
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr(out));
+    expect_one_line(run(out, {"--quiet"}), 1, "run", out);
   }
   EXPECT_EQ(read_file(folder_ / "file"), "mine");
   EXPECT_EQ(read_file(folder_ / "out/disparity"), "mine");
@@ -206,11 +184,9 @@ TEST_F(RunDisk, FilesWhereFoldersHaveToBe) {
 TEST_F(RunDisk, AFolderNamedLikeAResultIsNamed) {
   const std::string out = folder_ / "out";
   fs::create_directories(out + "/disparity/000003.pfm");
-  const ProcessResult result = run(out, {"--quiet"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
-  EXPECT_THAT(result.err, HasSubstr("frame 3: cannot write " + out + "/disparity/000003.pfm"));
-  EXPECT_THAT(journalled_frames(out), testing::ElementsAre(0, 1, 2));
+  expect_one_line(run(out, {"--quiet"}), 1, "run",
+                  "frame 3: cannot write " + out + "/disparity/000003.pfm");
+  EXPECT_THAT(journalled_frames(out), ElementsAre(0, 1, 2));
 }
 
 TEST_F(RunDisk, AFolderThatGoesAwayAndComesBack) {
@@ -229,8 +205,7 @@ TEST_F(RunDisk, AFolderThatGoesAwayAndComesBack) {
   }
   fs::rename(out, folder_ / "elsewhere");
   const ProcessResult result = process.wait();
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
+  expect_one_line(result, 1, "run");
   EXPECT_THAT(result.err, StartsWith("vantage run: frame "));
   EXPECT_THAT(result.err, HasSubstr("No such file or directory"));
   EXPECT_FALSE(fs::exists(out));
@@ -238,9 +213,8 @@ TEST_F(RunDisk, AFolderThatGoesAwayAndComesBack) {
   const std::size_t before = journalled_frames(out).size();
   EXPECT_GT(before, 0U);
   EXPECT_LT(before, static_cast<std::size_t>(kMany));
-  const ProcessResult resumed = run(out, {"--resume", "--report", folder_ / "r.json"});
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-  EXPECT_EQ(read_report(folder_ / "r.json")["results"]["frames_before"], before);
+  succeeds(run(out, {"--resume", "--report", folder_ / "r.json"}));
+  EXPECT_EQ(read_json(folder_ / "r.json")["results"]["frames_before"], before);
   const FolderContent results = results_in(out);
   EXPECT_EQ(results.size(), static_cast<std::size_t>(kMany));
   const FolderContent expected = undisturbed({"--frames", "0-" + std::to_string(kFrames - 1)});
@@ -251,5 +225,4 @@ TEST_F(RunDisk, AFolderThatGoesAwayAndComesBack) {
   }
 }
 
-}  // namespace run_disk_test
-}  // namespace vantage
+}  // namespace vantage::run_disk_test

@@ -1,24 +1,11 @@
 // Films: depth videos, and the report on comfort against exact truth.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-
 #include "engine/image/stereo_packing.h"
 #include "engine/io/files/temporary_name.h"
-#include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
 #include "engine/io/video/video_io.h"
-#include "tests/apps/run_fixture.h"
+#include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace run_film_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
+namespace vantage::run_film_test {
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 180;
@@ -174,11 +161,10 @@ TEST(RunFilm, ComfortAgainstTruth) {
     truth_px.push_back(write_shot(shot, static_cast<int>(truth_px.size()), folder / "film"));
   }
   const ProcessResult result =
-      run_vantage({"run", "--stereo", folder / "film", "--packing", "sbsl", "--save",
-                   "comfort,depth-video", "--depth-range", "shot", "-o", folder / "out"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+      succeeds(run_vantage({"run", "--stereo", folder / "film", "--packing", "sbsl", "--save",
+                            "comfort,depth-video", "--depth-range", "shot", "-o", folder / "out"}));
   EXPECT_THAT(result.err, HasSubstr("comfort: unsafe"));
-  const nlohmann::json report = nlohmann::json::parse(read_file(folder / "out/comfort.json"));
+  const nlohmann::json report = read_json(folder / "out/comfort.json");
   ASSERT_EQ(report["shots"].size(), plan.size()) << report["shots"].dump(1);
   for (std::size_t i = 0; i < plan.size(); ++i) {
     const nlohmann::json& shot = report["shots"][i];
@@ -212,7 +198,7 @@ TEST(RunFilm, ComfortAgainstTruth) {
     EXPECT_THAT(page, HasSubstr(part));
   }
   // Each shot has a scale of its own, which no disparity exceeds.
-  const nlohmann::json scale = nlohmann::json::parse(read_file(folder / "out/depth-video.json"));
+  const nlohmann::json scale = read_json(folder / "out/depth-video.json");
   ASSERT_EQ(scale["shots"].size(), plan.size());
   EXPECT_LT(scale["shots"][6]["min_px"], -15.2);
   EXPECT_LT(scale["shots"][6]["max_px"], 0);
@@ -222,16 +208,15 @@ TEST(RunFilm, ComfortAgainstTruth) {
 class RunFilms : public RunTest {
  protected:
   [[nodiscard]] nlohmann::json json_of(const std::string& name) const {
-    return nlohmann::json::parse(read_file(folder_ / name));
+    return read_json(folder_ / name);
   }
 };
 
 /// Every level is the disparity of the map, rounded.
 TEST_F(RunFilms, DepthVideosHoldTheMaps) {
-  ASSERT_EQ(run(folder_ / "out", {"--save", "disparity,depth-video", "--frames", "0-6",
-                                  "--chunk-frames", "5", "--fps", "24000/1001"})
-                .exit_code,
-            0);
+  succeeds(
+      run(folder_ / "out",
+          words("--save disparity,depth-video --frames 0-6 --chunk-frames 5 --fps 24000/1001")));
   const nlohmann::json scale = json_of("out/depth-video.json");
   EXPECT_EQ(scale["bits"], 16);
   const float min = scale["shots"][0]["min_px"];
@@ -297,71 +282,62 @@ TEST_F(RunFilms, OtherCodecs) {
 }
 
 TEST_F(RunFilms, PartsAndInterruptionsGiveTheSameBytes) {
-  const std::vector<std::string> outputs = {"--save", "depth-video,comfort", "--chunk-frames", "5"};
+  const Words outputs = {"--save", "depth-video,comfort", "--chunk-frames", "5"};
   const FolderContent expected = undisturbed(outputs);
   ASSERT_TRUE(expected.contains("comfort.json"));
   ASSERT_TRUE(expected.contains("depth-video.json"));
   ASSERT_TRUE(expected.contains("depth-video.mkv"));
   const std::string parts = folder_ / "parts";
   for (const char* shard : {"2/3", "1/3", "3/3"}) {
-    ASSERT_EQ(run(parts, joined(outputs, {"--shard", shard})).exit_code, 0);
+    succeeds(run(parts, joined(outputs, {"--shard", shard})));
   }
-  const ProcessResult merged = run_vantage({"merge", parts});
-  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  succeeds(run_vantage({"merge", parts}));
   EXPECT_TRUE(same_files(results_in(parts), expected));
   const std::string resumed = folder_ / "resumed";
-  ASSERT_EQ(run(resumed, joined(outputs, {"--frames", "0-9"})).exit_code, 0);
+  succeeds(run(resumed, joined(outputs, {"--frames", "0-9"})));
   fs::remove(resumed + "/depth-video.mkv");
   fs::remove(resumed + "/comfort.html");
-  ASSERT_EQ(run(resumed, joined(outputs, {"--resume"})).exit_code, 0);
+  succeeds(run(resumed, joined(outputs, {"--resume"})));
   EXPECT_TRUE(same_files(results_in(resumed), expected));
   // What a killed process leaves goes when the run is resumed, whatever is left to do.
   for (const char* name : {"comfort.json", "comfort.html", "depth-video.json", "depth-video.mkv"}) {
     write_file(resumed + "/" + temporary_name(name, 7), "");
   }
-  ASSERT_EQ(run_vantage({"run", "-o", resumed, "--resume"}).exit_code, 0);
+  succeeds(run_vantage({"run", "-o", resumed, "--resume"}));
   EXPECT_TRUE(same_files(results_in(resumed), expected));
   // The report alone.
-  ASSERT_EQ(run(folder_ / "alone", {"--save", "comfort"}).exit_code, 0);
+  succeeds(run(folder_ / "alone", {"--save", "comfort"}));
   EXPECT_EQ(read_file(folder_ / "alone/comfort.json"), expected.at("comfort.json"));
 }
 
 TEST_F(RunFilms, ReportsAreVerifiedAndNameTheInputAsAtTheStart) {
   const std::string out = folder_ / "out";
-  ASSERT_EQ(run_vantage({"run", "--left", fs::relative(left_), "--right", right_, "--frames", "0-2",
-                         "--disparities=0:9", "--method", "ssd", "--save", "depth-video,comfort",
-                         "-o", out})
-                .exit_code,
-            0);
+  succeeds(run_vantage({"run", "--left", fs::relative(left_), "--right", right_, "--frames", "0-2",
+                        "--disparities=0:9", "--method", "ssd", "--save", "depth-video,comfort",
+                        "-o", out}));
   const FolderContent expected = results_in(out);
-  EXPECT_EQ(run_vantage({"verify", out}).exit_code, 0);
+  succeeds(run_vantage({"verify", out}));
   write_file(out + "/comfort.json", expected.at("comfort.json") + " ");
   fs::remove(out + "/depth-video.json");
   const ProcessResult damaged = run_vantage({"verify", out});
   EXPECT_EQ(damaged.exit_code, 1);
   EXPECT_THAT(damaged.out, HasSubstr("comfort.json has "));
   EXPECT_THAT(damaged.out, HasSubstr("depth-video.json is missing"));
-  ASSERT_EQ(run_vantage({"run", "-o", out, "--resume"}).exit_code, 0);
+  succeeds(run_vantage({"run", "-o", out, "--resume"}));
   EXPECT_TRUE(same_files(results_in(out), expected));
-  EXPECT_EQ(run_vantage({"verify", out}).exit_code, 0);
+  succeeds(run_vantage({"verify", out}));
 }
 
 TEST_F(RunFilms, WrongOptions) {
-  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+  const std::vector<Refusal> refusals = {
       {{"--depth-range", "shot"}, "--depth-range has no effect"},
       {{"--depth-codec", "ffv1-10"}, "--depth-codec has no effect"},
       {{"--save", "depth-video", "--depth-range", "5:5"}, "depth-range is 5:5, expected MIN:MAX"},
       {{"--save", "depth-video", "--depth-range", "near"}, "--depth-range is 'near'"},
       {{"--save", "comfort", "--search-range", "shot"}, "search-range is shot, expected film"},
       {{"--save", "comfort", "--video", "comfort"}, "video has comfort"}};
-  for (const auto& [options, message] : cases) {
-    const ProcessResult result = run(folder_ / "wrong", options);
-    EXPECT_EQ(result.exit_code, 2) << message;
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr(message));
-  }
-  EXPECT_FALSE(fs::exists(folder_ / "wrong"));
+  expect_refusals("run", folder_.path(), refusals,
+                  [&](const Words& words) { return run(folder_ / "wrong", words); });
 }
 
-}  // namespace run_film_test
-}  // namespace vantage
+}  // namespace vantage::run_film_test

@@ -1,13 +1,7 @@
 // Times of the frames of films with a variable rate.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <array>
 #include <cstdint>
-#include <filesystem>
-#include <vector>
 
 #include "engine/io/video/libav.h"
 #include "engine/io/video/libav_functions.h"
@@ -18,16 +12,13 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
-namespace vantage {
-namespace run_film_times_test {
-
-using testing::HasSubstr;
+namespace vantage::run_film_times_test {
 
 constexpr int kFilm = 12;
 const FrameRate kFilmRate{24000, 1001};
 
 /// When the packets of a video are shown, in seconds, in order, as libavformat reads them.
-std::vector<double> packet_times(const std::filesystem::path& path) {
+std::vector<double> packet_times(const fs::path& path) {
   const LibavInput input = open_media_file(path);
   const AVStream& stream = *find_video_stream(*input);
   const LibavPacket packet = make_libav_packet();
@@ -46,29 +37,27 @@ std::vector<double> packet_times(const std::filesystem::path& path) {
 class RunFilmTimes : public StreamTest {
  protected:
   RunFilmTimes() {
-    const ProcessResult made =
-        run(folder_ / "made", {"--frames", "0-11", "--save", "stereo", "--video", "stereo",
-                               "--stereo-packing", "sbsl", "--fps", "24000/1001"});
-    EXPECT_EQ(made.exit_code, 0) << made.err;
+    const ProcessResult made = succeeds(run(
+        folder_ / "made",
+        words(
+            "--frames 0-11 --save stereo --video stereo --stereo-packing sbsl --fps 24000/1001")));
     for (int frame = 0; frame <= kFilm; ++frame) {
       times_.times.push_back(frame == 0 ? 0
                                         : times_.times.back() + 1001 * (frame % 4 == 0 ? 5 : 1));
     }
-    const std::array<std::filesystem::path, 1> film = {folder_ / "made/stereo.mp4"};
+    const std::array<fs::path, 1> film = {folder_ / "made/stereo.mp4"};
     join_videos(film, kFilmRate, {}, film_, times_);
   }
-  [[nodiscard]] std::vector<std::string> arguments_for(const std::string& out,
-                                                       const std::vector<std::string>& more) const {
+  [[nodiscard]] Words arguments_for(const std::string& out, const Words& more) const {
     return joined(
         {"run", "--stereo", film_, "--packing", "sbsl", "--method", "ssd", "--disparities=0:9",
          "--chunk-frames", "5", "-o", out, "--save", "depth-video,preview", "--video", "preview"},
         more);
   }
   /// Returns the folder.
-  [[nodiscard]] std::string process(const std::vector<std::string>& more) const {
+  [[nodiscard]] std::string process(const Words& more) const {
     const std::string out = folder_ / "out";
-    const ProcessResult result = run_vantage(joined(arguments_for(out, more), {"--overwrite"}));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run_vantage(joined(arguments_for(out, more), {"--overwrite"})));
     return out;
   }
   /// Of frame `first` of the film and every `step`-th after it, from the first on.
@@ -107,12 +96,10 @@ TEST_F(RunFilmTimes, AreTheSameForPartsOfARun) {
   const FolderContent whole = results_in(process({}));
   const std::string out = folder_ / "parts";
   for (const char* shard : {"2/2", "1/2"}) {
-    const ProcessResult part = run_vantage(arguments_for(out, {"--shard", shard}));
-    ASSERT_EQ(part.exit_code, 0) << part.err;
+    succeeds(run_vantage(arguments_for(out, {"--shard", shard})));
   }
-  std::filesystem::rename(film_, folder_ / "elsewhere.mp4");
-  const ProcessResult merged = run_vantage({"merge", out, "--no-sound"});
-  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  fs::rename(film_, folder_ / "elsewhere.mp4");
+  succeeds(run_vantage({"merge", out, "--no-sound"}));
   expect_times(out + "/preview.mp4", 0, kFilm, 1, kExact);
   EXPECT_TRUE(same_files(results_in(out), whole));
 }
@@ -126,17 +113,16 @@ TEST_F(RunFilmTimes, GiveWayToAnotherRate) {
 }
 
 TEST_F(RunFilmTimes, CannotBeInAStream) {
-  const std::vector<std::string> stream = {"--frames", "0-1", "--save", "preview", "-o", "-"};
-  const std::vector<std::string> input = {"--stereo", film_, "--packing",        "sbsl",
-                                          "--method", "ssd", "--disparities=0:9"};
+  const Words stream = {"--frames", "0-1", "--save", "preview", "-o", "-"};
+  const Words input = {"--stereo", film_, "--packing",        "sbsl",
+                       "--method", "ssd", "--disparities=0:9"};
   ASSERT_EQ(shell(command(joined(input, stream)) + " >" + (folder_ / "out.y4m")), 0) << err();
   EXPECT_THAT(err(), HasSubstr("run: warning: the input has a variable frame rate"));
   ASSERT_EQ(
       shell(command(joined(joined(input, stream), {"--fps", "25"})) + " >" + (folder_ / "out.y4m")),
       0)
       << err();
-  EXPECT_THAT(err(), testing::Not(HasSubstr("variable")));
+  EXPECT_THAT(err(), Not(HasSubstr("variable")));
 }
 
-}  // namespace run_film_times_test
-}  // namespace vantage
+}  // namespace vantage::run_film_times_test

@@ -1,16 +1,12 @@
 #include "tests/apps/run_fixture.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <sstream>
-#include <utility>
 
 #include "engine/execution.h"
 #include "engine/generation/layered_scene.h"
 
 namespace vantage {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -50,8 +46,8 @@ FolderContent results_in(const fs::path& folder) {
   return content;
 }
 
-std::vector<std::string> leftovers_in(const fs::path& folder) {
-  std::vector<std::string> left;
+Words leftovers_in(const fs::path& folder) {
+  Words left;
   for (const std::string& name : files_below(folder)) {
     if (is_unnamed(name)) {
       left.push_back(name);
@@ -61,7 +57,7 @@ std::vector<std::string> leftovers_in(const fs::path& folder) {
 }
 
 testing::AssertionResult same_files(const FolderContent& actual, const FolderContent& expected) {
-  std::vector<std::string> differences;
+  Words differences;
   for (const auto& [name, bytes] : expected) {
     const auto found = actual.find(name);
     if (found == actual.end()) {
@@ -114,14 +110,6 @@ std::string frame_file(int frame, const std::string& extension) {
   return name + extension;
 }
 
-nlohmann::json read_report(const fs::path& path) { return nlohmann::json::parse(read_file(path)); }
-
-std::vector<std::string> joined(std::vector<std::string> some,
-                                const std::vector<std::string>& more) {
-  some.insert(some.end(), more.begin(), more.end());
-  return some;
-}
-
 RunTest::RunTest() {
   static const FolderContent sources = rendered_sources(kFrames, kWidth, kHeight);
   fs::create_directory(left_);
@@ -131,23 +119,21 @@ RunTest::RunTest() {
   }
 }
 
-std::vector<std::string> RunTest::arguments(const std::string& out,
-                                            const std::vector<std::string>& more) const {
-  std::vector<std::string> all = {"run",  "--left", left_, "--right",
-                                  right_, "-o",     out,   "--disparities=0:9"};
+Words RunTest::arguments(const std::string& out, const Words& more) const {
+  Words all = {"run", "--left", left_, "--right", right_, "-o", out, "--disparities=0:9"};
   if (std::ranges::find(more, "--method") == more.end()) {
     all = joined(all, {"--method", "ssd"});  // the quickest: most tests are not about maps
   }
   return joined(all, more);
 }
 
-ProcessResult RunTest::run(const std::string& out, const std::vector<std::string>& more) const {
+ProcessResult RunTest::run(const std::string& out, const Words& more) const {
   return run_vantage(arguments(out, more));
 }
 
-FolderContent RunTest::undisturbed(const std::vector<std::string>& more) const {
+FolderContent RunTest::undisturbed(const Words& more) const {
   // Tests of one process ask for the same again and again. What they did to the sources counts.
-  static std::map<std::pair<std::vector<std::string>, FolderContent>, FolderContent> known;
+  static std::map<std::pair<Words, FolderContent>, FolderContent> known;
   FolderContent sources = results_in(left_);
   for (auto& [name, bytes] : results_in(right_)) {
     sources["right/" + name] = std::move(bytes);
@@ -157,8 +143,7 @@ FolderContent RunTest::undisturbed(const std::vector<std::string>& more) const {
     return results;
   }
   const TemporaryFolder out;
-  const ProcessResult result = run(out / "out", more);
-  EXPECT_EQ(result.exit_code, 0) << result.err;
+  succeeds(run(out / "out", more));
   results = results_in(out / "out");
   return results;
 }

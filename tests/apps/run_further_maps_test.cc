@@ -1,48 +1,32 @@
 // Sequences: maps beside the disparity map are those of 'vantage match'.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <string>
-#include <vector>
+#include "tests/apps/sampling.h"
 
-#include "engine/io/maps/disparity_io.h"
-#include "tests/apps/run_fixture.h"
-
-namespace vantage {
-namespace run_further_maps_test {
-
-using testing::HasSubstr;
+namespace vantage::run_further_maps_test {
 
 class RunFurtherMaps : public RunTest {
  protected:
   /// With the default preset.
-  [[nodiscard]] ProcessResult run(const std::string& out,
-                                  const std::vector<std::string>& more) const {
+  [[nodiscard]] ProcessResult run(const std::string& out, const Words& more) const {
     return run_vantage(joined(
         {"run", "--left", left_, "--right", right_, "-o", out, "--disparities=0:9", "--quiet"},
         more));
   }
   /// `match` of frame 2.
-  void match_frame(const std::vector<std::string>& more) const {
-    const ProcessResult result =
-        run_vantage(joined({"match", left_ + "/" + frame_file(2), right_ + "/" + frame_file(2),
-                            "-o", folder_ / "map.pfm", "--disparities=0:9"},
-                           more));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+  void match_frame(const Words& more) const {
+    succeeds(run_vantage(joined({"match", left_ + "/" + frame_file(2), right_ + "/" + frame_file(2),
+                                 "-o", folder_ / "map.pfm", "--disparities=0:9"},
+                                more)));
   }
 };
 
 TEST_F(RunFurtherMaps, AreThoseOfMatch) {
-  const std::vector<std::string> frames = {"--frames", "2-3", "--chunk-frames", "1"};
+  const Words frames = {"--frames", "2-3", "--chunk-frames", "1"};
   const std::string moments = folder_ / "moments";
   for (const std::string reference : {"left", "right"}) {
     const std::string out = moments + "-" + reference;
-    ASSERT_EQ(run(out, joined(frames, {"--save", "posterior-mean,posterior-variance", "--reference",
-                                       reference}))
-                  .exit_code,
-              0);
+    succeeds(run(out, joined(frames, {"--save", "posterior-mean,posterior-variance", "--reference",
+                                      reference})));
     match_frame({"--posterior-mean", folder_ / "mean.pfm", "--posterior-variance",
                  folder_ / "variance.pfm", "--reference", reference});
     EXPECT_TRUE(results_in(out)["posterior-mean/000002.pfm"] == read_file(folder_ / "mean.pfm"));
@@ -50,10 +34,8 @@ TEST_F(RunFurtherMaps, AreThoseOfMatch) {
                 read_file(folder_ / "variance.pfm"));
   }
   const std::string middle = folder_ / "middle";
-  ASSERT_EQ(run(middle, joined(frames, {"--save", "cyclopean,cyclopean-occlusion", "--selection",
-                                        "symmetric"}))
-                .exit_code,
-            0);
+  succeeds(run(middle, joined(frames, {"--save", "cyclopean,cyclopean-occlusion", "--selection",
+                                       "symmetric"})));
   match_frame({"--cyclopean", folder_ / "middle.pfm", "--cyclopean-occlusion",
                folder_ / "middle.png", "--selection", "symmetric"});
   EXPECT_TRUE(results_in(middle)["cyclopean/000002.pfm"] == read_file(folder_ / "middle.pfm"));
@@ -76,17 +58,15 @@ TEST_F(RunFurtherMaps, DepthResolutionsAreThoseOfTheDisparities) {
              "save = [\"disparity\", \"depth-resolution\"]\n"
              "disparity-resolution = 0.25\n");
   const std::string out = folder_ / "out";
-  const std::vector<std::string> outputs = {"--config",       folder_ / "run.toml",
-                                            "--calibration",  folder_ / "calib.txt",
-                                            "--chunk-frames", "1",
-                                            "--frames",       "0-3"};
-  ASSERT_EQ(run(out, joined(outputs, {"--shard", "2/2"})).exit_code, 0);
-  const ProcessResult result =
-      run(out, joined(outputs, {"--shard", "1/2", "--report", folder_ / "report.json"}));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Words outputs = {"--config",       folder_ / "run.toml",
+                         "--calibration",  folder_ / "calib.txt",
+                         "--chunk-frames", "1",
+                         "--frames",       "0-3"};
+  succeeds(run(out, joined(outputs, {"--shard", "2/2"})));
+  succeeds(run(out, joined(outputs, {"--shard", "1/2", "--report", folder_ / "report.json"})));
   std::vector<float> medians;
   std::vector<float> all;
-  const auto values = read_report(folder_ / "report.json")["results"]["depth_resolution"];
+  const auto values = read_json(folder_ / "report.json")["results"]["depth_resolution"];
   ASSERT_EQ(values["frames"].size(), 4U);
   for (int frame = 0; frame < 4; ++frame) {
     const DisparityMap map = read_disparity(out + "/disparity/" + frame_file(frame, "pfm"));
@@ -118,12 +98,9 @@ TEST_F(RunFurtherMaps, DepthResolutionsAreThoseOfTheDisparities) {
   EXPECT_EQ(values["disparity_resolution_px"], 0.25);
 
   // Those of `match`, of the right map, with the default of whole disparities.
-  const std::vector<std::string> right = {"--reference",    "right", "--subpixel", "none",
-                                          "--focal-length", "500",   "--baseline", "0.2"};
-  ASSERT_EQ(run(folder_ / "right",
-                joined(right, {"--save", "depth-resolution", "--frames", "2-2", "--format", "npy"}))
-                .exit_code,
-            0);
+  const Words right = words("--reference right --subpixel none --focal-length 500 --baseline 0.2");
+  succeeds(run(folder_ / "right",
+               joined(right, words("--save depth-resolution --frames 2-2 --format npy"))));
   match_frame(joined(right, {"--depth-resolution", folder_ / "dz.npy"}));
   EXPECT_TRUE(results_in(folder_ / "right")["depth-resolution/000002.npy"] ==
               read_file(folder_ / "dz.npy"));
@@ -131,10 +108,9 @@ TEST_F(RunFurtherMaps, DepthResolutionsAreThoseOfTheDisparities) {
 
 TEST_F(RunFurtherMaps, CloudsMayBeEmpty) {
   const std::string out = folder_ / "out";
-  const ProcessResult result =
-      RunTest::run(out, {"--save", "cloud,mesh", "--focal-length", "500", "--baseline", "0.2",
-                         "--max-depth", "0.001", "--frames", "0-0"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const ProcessResult result = succeeds(RunTest::run(
+      out,
+      words("--save cloud,mesh --focal-length 500 --baseline 0.2 --max-depth 0.001 --frames 0-0")));
   EXPECT_THAT(result.err, HasSubstr("frame 0: its cloud is empty: no pixel has"));
   EXPECT_THAT(read_file(out + "/cloud/000000.ply"), HasSubstr("\nelement vertex 0\n"));
   EXPECT_THAT(read_file(out + "/mesh/000000.ply"), HasSubstr("\nelement face 0\n"));
@@ -142,7 +118,7 @@ TEST_F(RunFurtherMaps, CloudsMayBeEmpty) {
 
 TEST_F(RunFurtherMaps, PosesAreCountedBeforeTheStart) {
   const std::string out = folder_ / "out";
-  const auto run_with = [&](int poses, const std::vector<std::string>& more) {
+  const auto run_with = [&](int poses, const Words& more) {
     std::string text;
     for (int i = 0; i < poses; ++i) {
       text += "1 0 0 0 0 1 0 0 0 0 1 " + std::to_string(i) + "\n";
@@ -152,64 +128,49 @@ TEST_F(RunFurtherMaps, PosesAreCountedBeforeTheStart) {
                                      "0.2", "--poses", folder_ / "poses.txt"},
                                     more));
   };
-  const ProcessResult few = run_with(5, {"--quiet"});
-  EXPECT_EQ(few.exit_code, 1);
-  EXPECT_TRUE(is_one_line(few, "run"));
-  EXPECT_THAT(few.err, HasSubstr("has 5 poses, expected one for each pair from 0 to 19"));
-  EXPECT_FALSE(std::filesystem::exists(out));
+  expect_one_line(run_with(5, {"--quiet"}), 1, "run",
+                  "has 5 poses, expected one for each pair from 0 to 19");
+  EXPECT_FALSE(fs::exists(out));
   // Those of all pairs of the input, whichever are taken.
   EXPECT_THAT(run_with(16, {"--every", "4+1", "--dry-run"}).err, HasSubstr("from 0 to 17"));
-  EXPECT_EQ(run_with(18, {"--every", "4+1", "--dry-run"}).exit_code, 0);
-  EXPECT_EQ(run_with(5, {"--frames", "1-4", "--dry-run"}).exit_code, 0);
+  succeeds(run_with(18, {"--every", "4+1", "--dry-run"}));
+  succeeds(run_with(5, {"--frames", "1-4", "--dry-run"}));
   EXPECT_THAT(run_with(22, {"--dry-run"}).out, HasSubstr("22 poses for 20 pairs, the last 2 are"));
 }
 
 TEST_F(RunFurtherMaps, AreMadeAgainForAVideo) {
-  const std::vector<std::string> outputs = {
-      "--save",  "disparity,cyclopean-occlusion", "--selection",    "symmetric",
-      "--video", "cyclopean-occlusion",           "--chunk-frames", "5"};
+  const Words outputs = words(
+      "--save disparity,cyclopean-occlusion --selection symmetric --video "
+      "cyclopean-occlusion --chunk-frames 5");
   const std::string out = folder_ / "out";
-  ASSERT_EQ(RunTest::run(out, joined(outputs, {"--frames", "0-7"})).exit_code, 0);
-  ASSERT_EQ(RunTest::run(out, joined(outputs, {"--resume"})).exit_code, 0);
+  succeeds(RunTest::run(out, joined(outputs, {"--frames", "0-7"})));
+  succeeds(RunTest::run(out, joined(outputs, {"--resume"})));
   EXPECT_TRUE(same_files(results_in(out), undisturbed(outputs)));
 }
 
 TEST_F(RunFurtherMaps, AreRefusedWhereThereAreNone) {
-  struct Case {
-    std::vector<std::string> arguments;
-    std::string message;
-  };
-  for (const Case& test : std::vector<Case>{
-           {{"--save", "cyclopean"}, "expected them with selection symmetric only"},
-           {{"--save", "posterior-mean", "--method", "ssd"}, "expected the aggregation bayes"},
-           {{"--save", "posterior-variance", "--preset", "realtime"}, "expected search-size full"},
-           {{"--save", "posterior-variance", "--format", "png"}, "save has posterior-variance"},
-           {{"--save", "depth-resolution"}, "--save depth, depth-resolution, cloud or mesh is in"},
-           {{"--save", "depth-resolution", "--focal-length", "9", "--baseline", "1", "--format",
-             "png"},
-            "save has depth-resolution"},
-           {{"--save", "depth-resolution", "--focal-length", "9", "--baseline", "1",
-             "--disparity-resolution", "0"},
-            "disparity-resolution is 0, expected a number above 0"},
-           {{"--disparity-resolution", "1"}, "where --save has no depth-resolution"},
-           {{"--save", "depth-resolution", "--focal-length", "9", "--baseline", "1", "--max-depth",
-             "5"},
-            "--max-depth has no effect"},
-           {{"--save", "disparity,posterior-mean", "--video", "posterior-mean"},
-            "whose values a video cannot hold"}}) {
-    const ProcessResult result = run(folder_ / "out", test.arguments);
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr(test.message));
-  }
+  const std::vector<Refusal> refusals = {
+      {{"--save", "cyclopean"}, "expected them with selection symmetric only"},
+      {{"--save", "posterior-mean", "--method", "ssd"}, "expected the aggregation bayes"},
+      {{"--save", "posterior-variance", "--preset", "realtime"}, "expected search-size full"},
+      {{"--save", "posterior-variance", "--format", "png"}, "save has posterior-variance"},
+      {{"--save", "depth-resolution"}, "--save depth, depth-resolution, cloud or mesh is in"},
+      {{"--save", "depth-resolution", "--focal-length", "9", "--baseline", "1", "--format", "png"},
+       "save has depth-resolution"},
+      {words("--save depth-resolution --focal-length 9 --baseline 1 --disparity-resolution 0"),
+       "disparity-resolution is 0, expected a number above 0"},
+      {{"--disparity-resolution", "1"}, "where --save has no depth-resolution"},
+      {{"--save", "depth-resolution", "--focal-length", "9", "--baseline", "1", "--max-depth", "5"},
+       "--max-depth has no effect"},
+      {{"--save", "disparity,posterior-mean", "--video", "posterior-mean"},
+       "whose values a video cannot hold"}};
+  expect_refusals("run", folder_.path(), refusals,
+                  [&](const Words& words) { return run(folder_ / "out", words); });
   for (const std::string option : {"--cyclopean", "--cyclopean-occlusion"}) {
-    const ProcessResult result =
-        run_vantage({"match", left_ + "/" + frame_file(0), right_ + "/" + frame_file(0), "-o",
-                     folder_ / "map.pfm", option, folder_ / "middle.png"});
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr(option + " is given, expected it with --selection"));
+    expect_failure(run_vantage({"match", left_ + "/" + frame_file(0), right_ + "/" + frame_file(0),
+                                "-o", folder_ / "map.pfm", option, folder_ / "middle.png"}),
+                   2, option + " is given, expected it with --selection");
   }
 }
 
-}  // namespace run_further_maps_test
-}  // namespace vantage
+}  // namespace vantage::run_further_maps_test

@@ -1,17 +1,11 @@
 // The same bytes whatever a run is done with and in however many parts.
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <memory>
 
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace run_identity_test {
-
-namespace fs = std::filesystem;
+namespace vantage::run_identity_test {
 
 /// Of threads, executor and frames in flight.
 struct Way {
@@ -19,7 +13,7 @@ struct Way {
   int threads;
   int in_flight;
 
-  [[nodiscard]] std::vector<std::string> arguments() const {
+  [[nodiscard]] Words arguments() const {
     return {"--executor",  executor,
             "--threads",   std::to_string(threads),
             "--in-flight", std::to_string(in_flight)};
@@ -45,24 +39,20 @@ std::vector<Way> ways_of(int rotation) {
 struct Outputs {
   std::string name;
   int rotation;  ///< see ways_of()
-  std::vector<std::string> arguments;
+  Words arguments;
 };
 
 class RunIdentity : public RunTest, public testing::WithParamInterface<Outputs> {
  protected:
-  [[nodiscard]] std::vector<std::string> with(const std::vector<std::string>& more) const {
+  [[nodiscard]] Words with(const Words& more) const {
     return joined(joined(GetParam().arguments, {"--measure-flicker"}), more);
   }
-  [[nodiscard]] nlohmann::json flicker() const {
-    return read_report(report_)["results"]["flicker"];
-  }
+  [[nodiscard]] nlohmann::json flicker() const { return read_json(report_)["results"]["flicker"]; }
 
   /// What all others must be like.
   void SetUp() override {
     const std::string out = folder_ / "expected";
-    ASSERT_EQ(
-        run(out, with({"--executor", "serial", "--in-flight", "1", "--report", report_})).exit_code,
-        0);
+    succeeds(run(out, with({"--executor", "serial", "--in-flight", "1", "--report", report_})));
     expected_ = results_in(out);
     expected_flicker_ = flicker();
     ASSERT_EQ(expected_flicker_["frames"], kFrames - kFrames / 5);
@@ -79,8 +69,7 @@ TEST_P(RunIdentity, ForAnyExecutionAndFramesInFlight) {
   for (const Way& way : sampled(ways_of(GetParam().rotation), 2,
                                 static_cast<std::uint32_t>(GetParam().name.size()))) {
     const std::string out = folder_ / "out";
-    const ProcessResult result = run(out, with(joined(way.arguments(), {"--report", report_})));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run(out, with(joined(way.arguments(), {"--report", report_}))));
     EXPECT_TRUE(same_files(results_in(out), expected_))
         << way.executor << " " << way.threads << " " << way.in_flight;
     EXPECT_EQ(flicker(), expected_flicker_);
@@ -108,12 +97,10 @@ TEST_P(RunIdentity, ForAnyNumberOfParts) {
             streams.back()->path()));
       }
       for (const auto& process : processes) {
-        const ProcessResult result = process->wait();
-        ASSERT_EQ(result.exit_code, 0) << result.err;
+        succeeds(process->wait());
       }
     }
-    const ProcessResult merged = run_vantage({"merge", out, "--report", report_});
-    ASSERT_EQ(merged.exit_code, 0) << merged.err;
+    succeeds(run_vantage({"merge", out, "--report", report_}));
     EXPECT_TRUE(same_files(results_in(out), expected_)) << shards;
     EXPECT_EQ(flicker(), expected_flicker_) << shards;
     fs::remove_all(out);
@@ -122,22 +109,22 @@ TEST_P(RunIdentity, ForAnyNumberOfParts) {
 
 INSTANTIATE_TEST_SUITE_P(
     Outputs, RunIdentity,
-    testing::Values(Outputs{"Images", 0, kImageOutputs}, Outputs{"Videos", 1, kVideoOutputs},
-                    Outputs{"Shots", 1,
-                            joined(kVideoOutputs,
-                                   {"--intensity-fit", "shot", "--preview-range", "shot"})},
-                    Outputs{"TemporalPrior", 2,
-                            joined(kVideoOutputs, {"--temporal-prior", "1", "--method", "diffusion",
-                                                   "--iterations", "4"})},
-                    Outputs{"Reuse", 1,
-                            joined(kVideoOutputs, {"--method", "bayes", "--cost", "census-rays",
-                                                   "--prior-smoothing", "maximum", "--levels", "3",
-                                                   "--search-size", "half", "--reuse", "frame"})},
-                    Outputs{"ReuseAtFullSize", 1,
-                            joined(kVideoOutputs, {"--method", "bayes", "--cost", "census-rays",
-                                                   "--prior-smoothing", "maximum", "--levels", "3",
-                                                   "--window-levels", "1", "--reuse", "frame"})}),
+    testing::Values(
+        Outputs{"Images", 0, kImageOutputs}, Outputs{"Videos", 1, kVideoOutputs},
+        Outputs{"Shots", 1,
+                joined(kVideoOutputs, {"--intensity-fit", "shot", "--preview-range", "shot"})},
+        Outputs{
+            "TemporalPrior", 2,
+            joined(kVideoOutputs, words("--temporal-prior 1 --method diffusion --iterations 4"))},
+        Outputs{"Reuse", 1,
+                joined(kVideoOutputs, words("--method bayes --cost census-rays --prior-smoothing "
+                                            "maximum --levels 3 --search-size "
+                                            "half --reuse frame"))},
+        Outputs{
+            "ReuseAtFullSize", 1,
+            joined(kVideoOutputs,
+                   words("--method bayes --cost census-rays --prior-smoothing maximum --levels 3 "
+                         "--window-levels 1 --reuse frame"))}),
     [](const auto& instance) { return instance.param.name; });
 
-}  // namespace run_identity_test
-}  // namespace vantage
+}  // namespace vantage::run_identity_test

@@ -1,24 +1,12 @@
 // Runs that are asked to stop, and clocks that jump.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <csignal>
 #include <thread>
 
 #include "tests/apps/preloaded.h"
-#include "tests/apps/run_fixture.h"
-#include "tests/test_paths.h"
 
-namespace vantage {
-namespace run_interrupt_test {
-
-namespace fs = std::filesystem;
-using testing::ContainsRegex;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+namespace vantage::run_interrupt_test {
 
 class InterruptedRun : public RunTest {
  protected:
@@ -47,7 +35,7 @@ class InterruptedRun : public RunTest {
   }
 
   /// Stops the run by `signal` and goes on with it.
-  void interrupt(int signal, const std::vector<std::string>& outputs) {
+  void interrupt(int signal, const Words& outputs) {
     const std::string report = folder_ / "report.json";
     const TemporaryFolder streams;
     const VantageProcess process(
@@ -59,17 +47,16 @@ class InterruptedRun : public RunTest {
     EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
     EXPECT_THAT(stopped.err, HasSubstr("(interrupted, --resume continues)"));
     EXPECT_THAT(leftovers_in(out_), IsEmpty());
-    const nlohmann::json results = read_report(report)["results"];
+    const nlohmann::json results = read_json(report)["results"];
     EXPECT_EQ(results["interrupted"], true);
     const std::vector<int> done = journalled_frames(out_);
     EXPECT_FALSE(done.empty());
     EXPECT_LT(done.size(), static_cast<std::size_t>(frames_));
     // In order and without a gap.
     EXPECT_EQ(done.back() + 1, static_cast<int>(done.size()));
-    const ProcessResult resumed = run(out_, joined(outputs, {"--resume", "--report", report}));
-    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    succeeds(run(out_, joined(outputs, {"--resume", "--report", report})));
     EXPECT_EQ(results["frames"], done.size());
-    EXPECT_EQ(read_report(report)["results"]["frames_before"], done.size());
+    EXPECT_EQ(read_json(report)["results"]["frames_before"], done.size());
     EXPECT_THAT(leftovers_in(out_), IsEmpty());
     EXPECT_EQ(journalled_frames(out_).size(), static_cast<std::size_t>(frames_));
     expect_maps_of_their_sources();
@@ -100,8 +87,7 @@ TEST_F(InterruptedRun, CtrlCWithVideos) {
 
 /// All frames are of one chunk: nothing of the video is kept, all maps are.
 TEST_F(InterruptedRun, ClosingTheTerminalBeforeTheFirstSegmentOfAVideo) {
-  const std::vector<std::string> outputs = {"--save",  "disparity,preview", "--video",
-                                            "preview", "--chunk-frames",    "500"};
+  const Words outputs = words("--save disparity,preview --video preview --chunk-frames 500");
   interrupt(SIGHUP, outputs);
   EXPECT_GT(fs::file_size(out_ + "/preview.mp4"), 1000U);
 }
@@ -145,19 +131,16 @@ TEST_F(InterruptedMatch, LeavesNoTemporaryFile) {
 class ClockJump : public RunTest {};
 
 TEST_F(ClockJump, NothingChangesButTheDate) {
-  const std::vector<std::string> outputs =
-      joined(kVideoOutputs, {"--temporal-prior", "1", "--progress", "bar"});
+  const Words outputs = joined(kVideoOutputs, {"--temporal-prior", "1", "--progress", "bar"});
   const FolderContent expected = undisturbed(outputs);
   const std::string out = folder_ / "out";
-  const std::vector<std::string> environment =
+  const Words environment =
       preloaded(test_paths::clock_jump(), {"CLOCK_JUMP_COUNT=" + (folder_ / "count")});
   const std::string report = folder_ / "report.json";
-  const ProcessResult half = run_vantage(
-      arguments(out, joined(outputs, {"--frames", "0-9", "--report", report})), environment);
-  ASSERT_EQ(half.exit_code, 0) << half.err;
-  const ProcessResult rest =
-      run_vantage(arguments(out, joined(outputs, {"--resume", "--report", report})), environment);
-  ASSERT_EQ(rest.exit_code, 0) << rest.err;
+  const ProcessResult half = succeeds(run_vantage(
+      arguments(out, joined(outputs, {"--frames", "0-9", "--report", report})), environment));
+  const ProcessResult rest = succeeds(
+      run_vantage(arguments(out, joined(outputs, {"--resume", "--report", report})), environment));
   EXPECT_TRUE(same_files(results_in(out), expected));
   for (const ProcessResult& result : {half, rest}) {
     EXPECT_THAT(result.err, HasSubstr(" frames/s"));
@@ -165,7 +148,7 @@ TEST_F(ClockJump, NothingChangesButTheDate) {
     EXPECT_THAT(result.err, Not(HasSubstr("nan")));
     EXPECT_THAT(result.err, Not(HasSubstr("inf")));
   }
-  const nlohmann::json seconds = read_report(report)["seconds"];
+  const nlohmann::json seconds = read_json(report)["seconds"];
   EXPECT_GE(seconds["wall"], 0);
   // No hour has passed, whatever the clock says.
   EXPECT_LT(seconds["wall"], 3600);
@@ -179,12 +162,9 @@ TEST_F(ClockJump, NothingChangesButTheDate) {
 /// The test above is worth nothing where the library is not loaded.
 TEST_F(ClockJump, TheClockDoesJump) {
   const std::string count = folder_ / "count";
-  EXPECT_EQ(
-      run_vantage({"--version"}, preloaded(test_paths::clock_jump(), {"CLOCK_JUMP_COUNT=" + count}))
-          .exit_code,
-      0);
+  succeeds(run_vantage({"--version"},
+                       preloaded(test_paths::clock_jump(), {"CLOCK_JUMP_COUNT=" + count})));
   EXPECT_TRUE(fs::exists(count));
 }
 
-}  // namespace run_interrupt_test
-}  // namespace vantage
+}  // namespace vantage::run_interrupt_test

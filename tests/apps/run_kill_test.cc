@@ -1,24 +1,15 @@
 // Runs that are killed, and continued until they are done.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
-#include <utility>
 
 #include "tests/apps/preloaded.h"
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace run_kill_test {
+namespace vantage::run_kill_test {
 
-namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-using testing::IsEmpty;
 
 constexpr int kKilled = 128 + SIGKILL;
 
@@ -26,11 +17,11 @@ constexpr int kKilled = 128 + SIGKILL;
 std::size_t random_kills() { return test::runs_everything() ? 20 : 5; }
 
 /// Execution options of the attempts of a run, taken in turn.
-using Ways = std::vector<std::vector<std::string>>;
+using Ways = std::vector<Words>;
 
-const std::vector<std::string> kTemporalOutputs =
+const Words kTemporalOutputs =
     joined(kImageOutputs, {"--temporal-prior", "1", "--measure-flicker"});
-const std::vector<std::string> kTemporalVideoOutputs =
+const Words kTemporalVideoOutputs =
     joined(kVideoOutputs, {"--temporal-prior", "1", "--measure-flicker"});
 
 class SlowKilledRun : public RunTest {
@@ -55,20 +46,19 @@ class SlowKilledRun : public RunTest {
   }
 
   /// Goes on until the run is done.
-  void finish(const std::vector<std::string>& outputs, const FolderContent& expected) const {
-    const ProcessResult result = run(out_, joined(outputs, {"--resume"}));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+  void finish(const Words& outputs, const FolderContent& expected) const {
+    succeeds(run(out_, joined(outputs, {"--resume"})));
     expect_done(expected);
   }
 
   /// Kills at moments that are spread over the time that a run takes, from its first results on.
   /// What is killed is continued; what is done before its moment comes begins anew.
-  void kill_at_random_moments(const std::vector<std::string>& outputs, const Ways& ways) {
+  void kill_at_random_moments(const Words& outputs, const Ways& ways) {
     SCOPED_TRACE(test::sample_name());
     const Clock::time_point dry = Clock::now();
-    ASSERT_EQ(run(out_, joined(outputs, {"--dry-run"})).exit_code, 0);
+    succeeds(run(out_, joined(outputs, {"--dry-run"})));
     const Clock::time_point begin = Clock::now();
-    ASSERT_EQ(run(out_, outputs).exit_code, 0);
+    succeeds(run(out_, outputs));
     const auto opening = begin - dry;
     const auto working = Clock::now() - begin - opening;
     const FolderContent expected = results_in(out_);
@@ -133,7 +123,7 @@ TEST_F(SlowKilledRun, EachAttemptMayRunInAnotherWay) {
 TEST_F(SlowKilledRun, AnyCallMayBeTheLast) {
   SCOPED_TRACE(test::sample_name());
   for (const auto& outputs : {kVideoOutputs, kImageOutputs}) {
-    const std::vector<std::string> all = arguments(out_, joined(outputs, {"--resume"}));
+    const Words all = arguments(out_, joined(outputs, {"--resume"}));
     const FileCalls calls = calls_of(all, out_);
     ASSERT_GT(calls.count(), 100);
     const FolderContent expected = results_in(out_);
@@ -165,11 +155,11 @@ TEST_F(SlowKilledRun, AnyCallMayBeTheLast) {
 TEST_F(SlowKilledRun, JoiningOfVideosMayBeCutOffAnywhere) {
   SCOPED_TRACE(test::sample_name());
   const std::string prepared = folder_ / "prepared";
-  ASSERT_EQ(run(out_, joined(kVideoOutputs, {"--shard", "1/1"})).exit_code, 0);
+  succeeds(run(out_, joined(kVideoOutputs, {"--shard", "1/1"})));
   ASSERT_FALSE(fs::exists(out_ + "/views.mp4"));
   fs::rename(out_ + "/.vantage/frames-1-of-1.jsonl", out_ + "/.vantage/frames-all.jsonl");
   fs::copy(out_, prepared, fs::copy_options::recursive);
-  const std::vector<std::string> again = arguments(out_, joined(kVideoOutputs, {"--resume"}));
+  const Words again = arguments(out_, joined(kVideoOutputs, {"--resume"}));
   const FileCalls calls = calls_of(again, out_);
   const FolderContent expected = undisturbed(kVideoOutputs);
   expect_done(expected);
@@ -189,5 +179,4 @@ TEST_F(SlowKilledRun, JoiningOfVideosMayBeCutOffAnywhere) {
   }
 }
 
-}  // namespace run_kill_test
-}  // namespace vantage
+}  // namespace vantage::run_kill_test

@@ -1,20 +1,12 @@
 // What runs take of memory.
 
-#include <gtest/gtest.h>
-
 #include <fstream>
-#include <map>
 #include <sstream>
 
 #include "tests/apps/preloaded.h"
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
-#include "tests/test_paths.h"
 
-namespace vantage {
-namespace run_memory_test {
-
-namespace fs = std::filesystem;
+namespace vantage::run_memory_test {
 
 /// Cameras of large frames, turned and distorting.
 constexpr const char* kRig = R"(%YAML:1.0
@@ -65,26 +57,22 @@ class SlowRunMemory : public RunTest {
     }
   }
 
-  [[nodiscard]] nlohmann::json report_of(const std::vector<std::string>& arguments,
-                                         const std::vector<std::string>& environment = {}) const {
+  [[nodiscard]] nlohmann::json report_of(const Words& arguments,
+                                         const Words& environment = {}) const {
     const std::string report = folder_ / "report.json";
-    const ProcessResult result =
-        run_vantage(joined(arguments, {"--report", report, "--threads", "2"}), environment);
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run_vantage(joined(arguments, {"--report", report, "--threads", "2"}), environment));
     fs::remove_all(out_);
-    return read_report(report);
+    return read_json(report);
   }
 
-  [[nodiscard]] std::vector<std::string> large_arguments(
-      const std::vector<std::string>& more) const {
+  [[nodiscard]] Words large_arguments(const Words& more) const {
     return joined(
         {"run", "--left", large_left_, "--right", large_right_, "-o", out_, "--disparities=0:19"},
         more);
   }
 
   /// Allocations of a run: those of at least `bytes` (a power of two).
-  [[nodiscard]] double allocations(const std::vector<std::string>& arguments,
-                                   std::size_t bytes) const {
+  [[nodiscard]] double allocations(const Words& arguments, std::size_t bytes) const {
     const std::string counts = folder_ / "counts";
     (void)report_of(arguments,
                     preloaded(test_paths::allocation_count(), {"ALLOCATION_COUNT=" + counts}));
@@ -100,9 +88,8 @@ class SlowRunMemory : public RunTest {
   }
 
   /// What a frame adds when all that is reused is there.
-  [[nodiscard]] double allocations_per_frame(const std::vector<std::string>& arguments,
-                                             std::size_t bytes, int few = 50,
-                                             int more = 100) const {
+  [[nodiscard]] double allocations_per_frame(const Words& arguments, std::size_t bytes,
+                                             int few = 50, int more = 100) const {
     const auto up_to = [&](int frames) {
       return allocations(joined(arguments, {"--frames", "0-" + std::to_string(frames - 1)}), bytes);
     };
@@ -119,7 +106,7 @@ class SlowRunMemory : public RunTest {
 
 TEST_F(SlowRunMemory, StaysFlat) {
   for (const auto& outputs : {kImageOutputs, joined(kVideoOutputs, {"--temporal-prior", "1"})}) {
-    const std::vector<std::string> common = arguments(out_, joined(outputs, {"--in-flight", "4"}));
+    const Words common = arguments(out_, joined(outputs, {"--in-flight", "4"}));
     const double few = report_of(joined(common, {"--frames", "0-49"}))["peak_memory_bytes"];
     const double many = report_of(common)["peak_memory_bytes"];
     EXPECT_LT(many, 1.05 * few) << many << " bytes for " << kMany << " frames";
@@ -127,24 +114,21 @@ TEST_F(SlowRunMemory, StaysFlat) {
 }
 
 TEST_F(SlowRunMemory, IsNotMoreThanAllowed) {
-  const std::vector<std::vector<std::string>> jobs = {
+  const std::vector<Words> jobs = {
       {"--frames", "0-15"},
-      {"--frames", "0-9", "--method", "membrane", "--iterations", "3", "--save",
-       "disparity,right-disparity,confidence,preview,views,stereo", "--view", "0.5"},
-      {"--frames", "0-29", "--method", "ssd", "--save", "preview,views", "--view", "0.5", "--video",
-       "preview,views"},
-      {"--frames", "0-15", "--method", "diffusion", "--iterations", "4", "--temporal-prior", "1",
-       "--measure-flicker"},
+      words("--frames 0-9 --method membrane --iterations 3 --save "
+            "disparity,right-disparity,confidence,preview,views,stereo --view 0.5"),
+      words("--frames 0-29 --method ssd --save preview,views --view 0.5 --video preview,views"),
+      words("--frames 0-15 --method diffusion --iterations 4 --temporal-prior 1 --measure-flicker"),
       {"--frames", "0-15", "--preset", "realtime", "--reuse", "frame"},
       {"--frames", "0-15", "--method", "ssd", "--calibration", rig_, "--save", "views", "--view",
        "0.5,0.1"}};
   SCOPED_TRACE(test::sample_name());
   SampledNumbers numbers(4);
-  for (const std::vector<std::string>& job : jobs) {
+  for (const Words& job : jobs) {
     const ProcessResult refused =
         run_vantage(large_arguments(joined(job, {"--memory", "10M", "--quiet"})));
-    EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_TRUE(is_one_line(refused, "run"));
+    expect_one_line(refused, 1, "run");
     EXPECT_FALSE(fs::exists(out_));
     const std::string says = "memory is 10 MiB, expected at least ";
     const std::size_t min = refused.err.find(says);
@@ -165,9 +149,8 @@ TEST_F(SlowRunMemory, IsNotMoreThanAllowed) {
 }
 
 TEST_F(SlowRunMemory, HasOwners) {
-  const nlohmann::json report =
-      report_of(large_arguments({"--frames", "0-19", "--in-flight", "4", "--method", "membrane",
-                                 "--iterations", "4", "--iterations-per-pass", "2"}));
+  const nlohmann::json report = report_of(large_arguments(words(
+      "--frames 0-19 --in-flight 4 --method membrane --iterations 4 --iterations-per-pass 2")));
   const auto owners = report["memory"]["owners"].get<std::map<std::string, double>>();
   for (const char* owner :
        {"program", "frames in flight", "prepared images", "rings", "stored iterations", "other"}) {
@@ -195,15 +178,14 @@ TEST_F(SlowRunMemory, FramesAllocateLittle) {
   EXPECT_LT(allocations_per_frame(arguments(out_, {}), 1), 450);
   EXPECT_LT(allocations_per_frame(arguments(out_, kImageOutputs), 1), 800);
   // In which every fiftieth frame begins videos anew.
-  EXPECT_LT(allocations_per_frame(arguments(out_, {"--save", "preview,views", "--view", "0.5",
-                                                   "--video", "preview,views"}),
-                                  1),
+  EXPECT_LT(allocations_per_frame(
+                arguments(out_, words("--save preview,views --view 0.5 --video preview,views")), 1),
             800);
 }
 
 /// Pictures on their way from and to files are all that takes blocks of this size anew.
 TEST_F(SlowRunMemory, FramesAllocateFewLargeBlocks) {
-  const auto per_frame = [&](const std::vector<std::string>& more) {
+  const auto per_frame = [&](const Words& more) {
     return allocations_per_frame(large_arguments(more), std::size_t{64} << 10, 20, 45);
   };
   EXPECT_LT(per_frame({"--method", "ssd"}), 12);
@@ -219,5 +201,4 @@ TEST_F(SlowRunMemory, FramesAllocateFewLargeBlocks) {
             30);
 }
 
-}  // namespace run_memory_test
-}  // namespace vantage
+}  // namespace vantage::run_memory_test

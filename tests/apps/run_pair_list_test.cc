@@ -1,19 +1,8 @@
 // run --pairs with further columns: results are those of `match` with the options of each pair.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
+#include "tests/apps/sampling.h"
 
-#include "tests/apps/run_fixture.h"
-
-namespace vantage {
-namespace run_pair_list_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
+namespace vantage::run_pair_list_test {
 
 /// Cameras of the size of the frames, turned and distorting.
 constexpr const char* kTurnedRig = R"(%YAML:1.0
@@ -36,18 +25,15 @@ class RunPairList : public RunTest {
     write_file(folder_ / "rigs/rectified.txt", kRectifiedRig);
   }
   void write_list(const std::string& lines) const { write_file(list_, lines); }
-  [[nodiscard]] ProcessResult run_list(const std::string& out,
-                                       const std::vector<std::string>& more) const {
+  [[nodiscard]] ProcessResult run_list(const std::string& out, const Words& more) const {
     return run_vantage(
         joined({"run", "--pairs", list_, "-o", out, "--preset", "fast", "--quiet"}, more));
   }
   /// `match` of frame 2 or another.
-  void match_frame(int frame, const std::vector<std::string>& more) const {
-    const ProcessResult result =
-        run_vantage(joined({"match", left_ + "/" + frame_file(frame),
-                            right_ + "/" + frame_file(frame), "--preset", "fast", "--quiet"},
-                           more));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+  void match_frame(int frame, const Words& more) const {
+    succeeds(run_vantage(joined({"match", left_ + "/" + frame_file(frame),
+                                 right_ + "/" + frame_file(frame), "--preset", "fast", "--quiet"},
+                                more)));
   }
 
   std::string list_ = folder_ / "list.csv";
@@ -59,19 +45,12 @@ TEST_F(RunPairList, ResultsAreThoseOfMatchWithTheOptionsOfEachPair) {
       "tower,left/000002.png,right/000002.png,rigs/turned.yml,0,12\n"
       "gate,left/000003.png,right/000003.png,rigs/rectified.txt,-2,9\n"
       ",left/000004.png,right/000004.png,rigs/rectified.txt,,\n");
-  const std::vector<std::string> options = {"--save",
-                                            "disparity,depth,depth-resolution,preview",
-                                            "--disparities",
-                                            "0:7",
-                                            "--depth-format",
-                                            "npy",
-                                            "--calibration-unit",
-                                            "m",
-                                            "--no-tuning"};
+  const Words options = words(
+      "--save disparity,depth,depth-resolution,preview --disparities 0:7 --depth-format npy "
+      "--calibration-unit m --no-tuning");
   const std::string out = folder_ / "out";
-  const ProcessResult result =
-      run_list(out, joined(options, {"--chunk-frames", "1", "--report", folder_ / "report.json"}));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(
+      run_list(out, joined(options, {"--chunk-frames", "1", "--report", folder_ / "report.json"})));
   const FolderContent made = results_in(out);
   const auto expect_same = [&](int frame, const std::string& name, const std::string& rig,
                                const std::string& range) {
@@ -89,22 +68,20 @@ TEST_F(RunPairList, ResultsAreThoseOfMatchWithTheOptionsOfEachPair) {
   expect_same(3, "gate", "rectified.txt", "-2:9");
   expect_same(4, "000002", "rectified.txt", "0:7");
   EXPECT_EQ(made.size(), 12U);
-  const auto values = read_report(folder_ / "report.json")["results"]["depth_resolution"];
+  const auto values = read_json(folder_ / "report.json")["results"]["depth_resolution"];
   EXPECT_EQ(values["frames"].size(), 3U);
   EXPECT_FALSE(values.contains("nearest"));  // two scales
 
   // Names are in the journal: nothing is made again, and a lost file is.
-  EXPECT_EQ(run_vantage({"verify", out}).exit_code, 0);
+  succeeds(run_vantage({"verify", out}));
   fs::remove(out + "/disparity/gate.pfm");
-  const ProcessResult resumed = run_vantage({"run", "-o", out, "--resume"});
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  const ProcessResult resumed = succeeds(run_vantage({"run", "-o", out, "--resume"}));
   EXPECT_THAT(resumed.err, HasSubstr("2 were already done"));
   EXPECT_TRUE(same_files(results_in(out), made));
   // Parts, in any order.
   const std::string parts = folder_ / "parts";
   for (const char* shard : {"2/2", "1/2"}) {
-    ASSERT_EQ(run_list(parts, joined(options, {"--chunk-frames", "1", "--shard", shard})).exit_code,
-              0);
+    succeeds(run_list(parts, joined(options, {"--chunk-frames", "1", "--shard", shard})));
   }
   EXPECT_TRUE(same_files(results_in(parts), made));
   // Another range is another run.
@@ -131,78 +108,67 @@ TEST_F(RunPairList, FoldersChooseTheCamerasOfKittiPairByPair) {
       "left,right,calibration,min-disparity,max-disparity\n"
       "left/000002.png,right/000002.png,rigs/kitti.txt,0,9\n"
       "image_2/000002.png,image_3/000002.png,rigs/kitti.txt,0,9\n");
-  const auto depths_of = [&](const std::string& out, const std::vector<std::string>& more) {
-    const ProcessResult result = run_vantage(joined(
-        {"run", "--pairs", list_, "-o", out, "--save", "depth", "--depth-format", "npy"}, more));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto depths_of = [&](const std::string& out, const Words& more) {
+    const ProcessResult result = succeeds(run_vantage(joined(
+        {"run", "--pairs", list_, "-o", out, "--save", "depth", "--depth-format", "npy"}, more)));
     return std::pair(results_in(out), result.err);
   };
   const auto [depths, messages] = depths_of(folder_ / "out", {});
   // All pairs have ranges: none is estimated.
-  EXPECT_THAT(messages, testing::Not(HasSubstr("--disparities auto")));
+  EXPECT_THAT(messages, Not(HasSubstr("--disparities auto")));
   EXPECT_THAT(messages, HasSubstr("run: 2 pairs, the first of 64x48 pixels, rectified on the fly"));
   EXPECT_THAT(messages, HasSubstr(", disparities of the list, "));
   EXPECT_THAT(messages, HasSubstr("kitti.txt: has KITTI's cameras 0 to 3, and 0 and 1 (grey)"));
   const auto depth_of = [&](const char* cameras) {
     const std::string file = folder_ / "depth.npy";
-    const ProcessResult result =
-        run_vantage({"match", left_ + "/000002.png", right_ + "/000002.png", "-o",
-                     folder_ / "m.pfm", "--quiet", "--calibration", folder_ / "rigs/kitti.txt",
-                     "--depth", file, "--disparities", "0:9", "--kitti-cameras", cameras});
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run_vantage({"match", left_ + "/000002.png", right_ + "/000002.png", "-o",
+                          folder_ / "m.pfm", "--quiet", "--calibration", folder_ / "rigs/kitti.txt",
+                          "--depth", file, "--disparities", "0:9", "--kitti-cameras", cameras}));
     return read_file(file);
   };
   EXPECT_TRUE(depths.at("depth/000000.npy") == depth_of("0,1"));
   EXPECT_TRUE(depths.at("depth/000001.npy") == depth_of("2,3"));
   const auto [chosen, nothing] = depths_of(folder_ / "chosen", {"--kitti-cameras", "2,3"});
-  EXPECT_THAT(nothing, testing::Not(HasSubstr("grey")));
+  EXPECT_THAT(nothing, Not(HasSubstr("grey")));
   EXPECT_TRUE(chosen.at("depth/000000.npy") == depths.at("depth/000001.npy"));
 }
 
 TEST_F(RunPairList, WhatColumnsDoNotAllowIsRefused) {
   struct Case {
     std::string list;
-    std::vector<std::string> options;
+    Words options;
     std::string message;
+    int exit_code = 2;
   };
   const std::string calibrated =
       "left,right,calibration\nleft/000002.png,right/000002.png,rigs/turned.yml\n";
   const std::string ranges =
       "left,right,min-disparity,max-disparity\nleft/000002.png,right/000002.png,0,9\n";
-  for (const Case& test : std::vector<Case>{
-           {"left,right,size\nleft/000002.png,right/000002.png,9\n", {}, "column 'size'"},
-           {calibrated, {"--view", "0.5"}, "a view is defined by one pair of cameras"},
-           {calibrated,
-            {"--focal-length", "60", "--baseline", "1", "--save", "depth"},
-            "--focal-length is given, but"},
-           {calibrated + "left/000003.png,right/000003.png,\n",
-            {"--save", "depth", "--calibration-unit", "m"},
-            "000003.png has no calibration"},
-           {calibrated, {"--save", "depth"}, "turned.yml: does not say how long its unit is"},
-           {ranges, {"--calibration-unit", "m"}, "--calibration-unit has no effect"},
-           {ranges, {"--save", "depth"}, "has no calibration"},
-           {ranges, {"--temporal-prior", "1"}, "disparities are passed from frame to frame"},
-           {ranges, {"--save", "depth-video"}, "--depth-range MIN:MAX"},
-           {"left,right,calibration\nleft/000002.png,right/000002.png,rigs/none.yml\n",
-            {},
-            "none.yml"},
-           {ranges,
-            {"--save", "depth", "--doffs", "3"},
-            "--doffs has no effect without --focal-length"},
-           {ranges, {"--kitti-cameras", "2,3"}, "--kitti-cameras has no effect"},
-           {"left,right,min-disparity,max-disparity\nleft/000002.png,right/000002.png,0,9999\n",
-            {},
-            "000002.png: "},
-           {calibrated,
-            {"--unrectified", folder_ / "rigs/turned.yml"},
-            "its file is of all pairs"}}) {
+  const std::vector<Case> cases = {
+      {"left,right,size\nleft/000002.png,right/000002.png,9\n", {}, "column 'size'"},
+      {calibrated, {"--view", "0.5"}, "a view is defined by one pair of cameras"},
+      {calibrated,
+       {"--focal-length", "60", "--baseline", "1", "--save", "depth"},
+       "--focal-length is given, but"},
+      {calibrated + "left/000003.png,right/000003.png,\n",
+       {"--save", "depth", "--calibration-unit", "m"},
+       "000003.png has no calibration"},
+      {calibrated, {"--save", "depth"}, "turned.yml: does not say how long its unit is"},
+      {ranges, {"--calibration-unit", "m"}, "--calibration-unit has no effect"},
+      {ranges, {"--save", "depth"}, "has no calibration"},
+      {ranges, {"--temporal-prior", "1"}, "disparities are passed from frame to frame"},
+      {ranges, {"--save", "depth-video"}, "--depth-range MIN:MAX"},
+      {"left,right,calibration\nleft/000002.png,right/000002.png,rigs/none.yml\n", {}, "none.yml"},
+      {ranges, {"--save", "depth", "--doffs", "3"}, "--doffs has no effect without --focal-length"},
+      {ranges, {"--kitti-cameras", "2,3"}, "--kitti-cameras has no effect"},
+      {"left,right,min-disparity,max-disparity\nleft/000002.png,right/000002.png,0,9999\n",
+       {},
+       "000002.png: "},
+      {calibrated, {"--unrectified", folder_ / "rigs/turned.yml"}, "its file is of all pairs"}};
+  for (const Case& test : cases) {
     write_list(test.list);
-    const ProcessResult result = run_list(folder_ / "wrong", test.options);
-    EXPECT_NE(result.exit_code, 0) << test.message;
-    EXPECT_TRUE(is_one_line(result, "run")) << result.err;
-    EXPECT_THAT(result.err, HasSubstr(test.message));
+    expect_one_line(run_list(folder_ / "wrong", test.options), test.exit_code, "run", test.message);
   }
 }
 
-}  // namespace run_pair_list_test
-}  // namespace vantage
+}  // namespace vantage::run_pair_list_test

@@ -1,24 +1,8 @@
 // New views of sequences from any camera, and along paths.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
-#include "tests/test_paths.h"
 
-namespace vantage {
-namespace run_poses_test {
-
-namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+namespace vantage::run_poses_test {
 
 /// With the camera half a baseline to the right of the left one, turned, of another size.
 constexpr const char* kPoses = R"([[view]]
@@ -51,10 +35,10 @@ class RunPoses : public RunTest {
     write_file(path_, path_to(1, 8));
   }
 
-  [[nodiscard]] std::vector<std::string> calibrated(const std::vector<std::string>& more) const {
+  [[nodiscard]] Words calibrated(const Words& more) const {
     return joined({"--calibration", calibration_}, more);
   }
-  [[nodiscard]] std::vector<std::string> all_views(const std::vector<std::string>& more) const {
+  [[nodiscard]] Words all_views(const Words& more) const {
     return joined(calibrated({"--save", "views,holes,sources", "--view", "0.5", "--pose", poses_,
                               "--path", path_}),
                   more);
@@ -67,8 +51,7 @@ class RunPoses : public RunTest {
 };
 
 TEST_F(RunPoses, AreTheViewsOfSynth) {
-  const ProcessResult result = run(out_, all_views({"--frames", "2-2"}));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
+  succeeds(run(out_, all_views({"--frames", "2-2"})));
   const std::string file = "/" + frame_file(2);
   EXPECT_THAT(files_below(out_ + "/views"),
               ElementsAre("0.25,-0.5" + file, "0.5" + file, "camera-1" + file, "path-1" + file));
@@ -80,17 +63,16 @@ TEST_F(RunPoses, AreTheViewsOfSynth) {
              "t = [-0.25, -0.125, -0.25]\n");
   const std::string poses = kPoses;
   write_file(folder_ / "camera.toml", poses.substr(0, poses.rfind("[[view]]")));
-  const std::vector<std::pair<std::string, std::vector<std::string>>> views = {
+  const std::vector<std::pair<std::string, Words>> views = {
       {"camera-1", {"--pose", folder_ / "camera.toml"}},
       {"path-1", {"--pose", folder_ / "quarter.toml"}},
       {"0.25,-0.5", {"--view", "0.25,-0.5"}}};
   for (const auto& [name, options] : views) {
-    const ProcessResult view =
+    succeeds(
         run_vantage(joined({"synth", left_ + file, right_ + file, "--disparities=0:9", "--method",
                             "ssd", "--calibration", calibration_, "-o", folder_ / "v.png",
                             "--hole-mask", folder_ / "h.png", "--source-mask", folder_ / "s.png"},
-                           options));
-    ASSERT_EQ(view.exit_code, 0) << view.err;
+                           options)));
     for (const auto& [kind, made] :
          {std::pair("views", "v.png"), {"holes", "h.png"}, {"sources", "s.png"}}) {
       EXPECT_EQ(read_file(out_ + "/" + kind + "/" + name + file), read_file(folder_ / made))
@@ -100,10 +82,9 @@ TEST_F(RunPoses, AreTheViewsOfSynth) {
 }
 
 TEST_F(RunPoses, TurnedPathsArePathsOfTurnedCameras) {
-  const auto views_of = [&](const std::vector<std::string>& more) {
+  const auto views_of = [&](const Words& more) {
     const std::string out = out_ + more[1];
-    const ProcessResult result = run(out, calibrated(joined(more, {"--frames", "0-2"})));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run(out, calibrated(joined(more, {"--frames", "0-2"}))));
     return results_in(out + "/views");
   };
   const FolderContent moving = views_of({"--view-path", "0=0,2=1", "--look-at", "4"});
@@ -114,59 +95,48 @@ TEST_F(RunPoses, TurnedPathsArePathsOfTurnedCameras) {
 }
 
 TEST_F(RunPoses, GiveTheSameBytesHoweverTheyAreMade) {
-  const std::vector<std::string> outputs = all_views(
+  const Words outputs = all_views(
       {"--video", "views", "--chunk-frames", "3", "--measure-flicker", "--frames", "0-9"});
-  ASSERT_EQ(run(out_, joined(outputs, {"--executor", "serial", "--in-flight", "1"})).exit_code, 0);
+  succeeds(run(out_, joined(outputs, {"--executor", "serial", "--in-flight", "1"})));
   const FolderContent expected = results_in(out_);
   ASSERT_TRUE(expected.contains("views/camera-1.mp4"));
-  const std::vector<std::vector<std::string>> ways = {
-      {"--executor", "tbb", "--threads", "3", "--in-flight", "5"},
-      {"--executor", "openmp", "--threads", "2", "--in-flight", "2"}};
+  const std::vector<Words> ways = {{"--executor", "tbb", "--threads", "3", "--in-flight", "5"},
+                                   {"--executor", "openmp", "--threads", "2", "--in-flight", "2"}};
   for (const auto& way : ways) {
     const std::string out = folder_ / way[1];
-    ASSERT_EQ(run(out, joined(outputs, way)).exit_code, 0);
+    succeeds(run(out, joined(outputs, way)));
     EXPECT_TRUE(same_files(results_in(out), expected)) << way[1];
   }
 }
 
 TEST_F(RunPoses, PartsAreMergedWithoutTheFiles) {
-  const std::vector<std::string> outputs = all_views({"--video", "views", "--chunk-frames", "5"});
-  ASSERT_EQ(run(out_, outputs).exit_code, 0);
+  const Words outputs = all_views({"--video", "views", "--chunk-frames", "5"});
+  succeeds(run(out_, outputs));
   const FolderContent expected = results_in(out_);
   const std::string parts = folder_ / "parts";
   for (const std::string shard : {"1/3", "2/3", "3/3"}) {
-    const ProcessResult result =
-        run(parts, joined(outputs, {"--shard", shard, "--threads", shard.substr(0, 1)}));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run(parts, joined(outputs, {"--shard", shard, "--threads", shard.substr(0, 1)})));
   }
   fs::remove(poses_);
   fs::remove(path_);
-  const ProcessResult merged = run_vantage({"merge", parts});
-  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  succeeds(run_vantage({"merge", parts}));
   EXPECT_TRUE(same_files(results_in(parts), expected));
 }
 
 TEST_F(RunPoses, OthersAreAnotherRun) {
-  const std::vector<std::string> some = {"--frames", "0-1"};
-  ASSERT_EQ(run(out_, all_views(some)).exit_code, 0);
+  const Words some = {"--frames", "0-1"};
+  succeeds(run(out_, all_views(some)));
   // What counts is what the file holds.
   fs::rename(path_, folder_ / "same.toml");
   auto renamed = all_views({"--resume", "--frames", "0-2"});
   std::ranges::replace(renamed, path_, std::string(folder_ / "same.toml"));
-  const ProcessResult resumed = run(out_, renamed);
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  succeeds(run(out_, renamed));
   write_file(path_, path_to(0.5, 8));
-  const ProcessResult other = run(out_, all_views({"--resume", "--quiet"}));
-  EXPECT_EQ(other.exit_code, 1);
-  EXPECT_TRUE(is_one_line(other, "run"));
-  EXPECT_THAT(other.err, HasSubstr("path was another one"));
+  expect_one_line(run(out_, all_views({"--resume", "--quiet"})), 1, "run", "path was another one");
   const std::string turned = folder_ / "turned";
-  ASSERT_EQ(run(turned, calibrated({"--view", "0", "--look-at", "4", "--frames", "0-0"})).exit_code,
-            0);
-  const ProcessResult elsewhere =
-      run(turned, calibrated({"--view", "0", "--look-at", "5", "--resume", "--quiet"}));
-  EXPECT_EQ(elsewhere.exit_code, 1);
-  EXPECT_THAT(elsewhere.err, HasSubstr("look-at was 4.0, now 5.0"));
+  succeeds(run(turned, calibrated({"--view", "0", "--look-at", "4", "--frames", "0-0"})));
+  expect_failure(run(turned, calibrated({"--view", "0", "--look-at", "5", "--resume", "--quiet"})),
+                 1, "look-at was 4.0, now 5.0");
 }
 
 using InputRunPoses = RunPoses;
@@ -178,44 +148,30 @@ TEST_F(InputRunPoses, WrongUsageIsOneLine) {
   write_file(away, path_to(1, 4) +
                        "[[view]]\nframe = 9\nK = [60, 0, 32, 0, 60, 24, 0, 0, 1]\n"
                        "R = [-1, 0, 0, 0, 1, 0, 0, 0, -1]\nt = [0, 0, 0]\n");
-  struct Misuse {
-    int exit_code;
-    std::vector<std::string> options;
-    std::string says;
-  };
-  const std::vector<Misuse> misuses = {
-      {2, {"--path", path_}, "poses with K, R and t need calibrated cameras, expected --calib"},
-      {2, {"--view", "0.5", "--look-at", "4"}, "--look-at needs the focal length, expected --cal"},
-      {2, calibrated({"--look-at", "4"}), "--look-at has no effect without --view or --view-path"},
-      {2, calibrated({"--look-at", "4", "--pose", poses_}), "turns the cameras of --view and"},
-      {2, calibrated({"--look-at", "-1", "--view", "0"}), "disparity to look at is -1, expected"},
-      {2, {"--pose", bad}, "view is 17, expected numbers within ±16"},
-      {2, {"--pose", path_}, "path.toml: view 1 has a frame, which only --path uses"},
-      {2, {"--path", poses_}, "poses.toml: view 1 has no frame, expected one for every pose"},
-      {2, calibrated({"--view", "0.25,-0.5", "--pose", poses_}), "view 0.25,-0.5 is given twice"},
-      {2, calibrated({"--path", path_, "--save", "disparity"}), "save has no views"},
-      {1, {"--path", folder_ / "absent.toml"}, "absent.toml: cannot be read"},
-      {1, calibrated({"--path", away}), "frame 8: camera of the new view looks away"}};
-  SCOPED_TRACE(test::sample_name());
-  for (const Misuse& misuse : test_paths::is_sanitized() ? sampled(misuses, 5, 3) : misuses) {
-    const ProcessResult result = run(out_, joined(misuse.options, {"--quiet"}));
-    EXPECT_EQ(result.exit_code, misuse.exit_code) << misuse.says;
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr(misuse.says));
-    EXPECT_FALSE(fs::exists(out_));
-  }
+  const std::vector<Refusal> refusals = {
+      {{"--path", path_}, "poses with K, R and t need calibrated cameras, expected --calib"},
+      {{"--view", "0.5", "--look-at", "4"}, "--look-at needs the focal length, expected --cal"},
+      {calibrated({"--look-at", "4"}), "--look-at has no effect without --view or --view-path"},
+      {calibrated({"--look-at", "4", "--pose", poses_}), "turns the cameras of --view and"},
+      {calibrated({"--look-at", "-1", "--view", "0"}), "disparity to look at is -1, expected"},
+      {{"--pose", bad}, "view is 17, expected numbers within ±16"},
+      {{"--pose", path_}, "path.toml: view 1 has a frame, which only --path uses"},
+      {{"--path", poses_}, "poses.toml: view 1 has no frame, expected one for every pose"},
+      {calibrated({"--view", "0.25,-0.5", "--pose", poses_}), "view 0.25,-0.5 is given twice"},
+      {calibrated({"--path", path_, "--save", "disparity"}), "save has no views"},
+      {{"--path", folder_ / "absent.toml"}, "absent.toml: cannot be read", 1},
+      {calibrated({"--path", away}), "frame 8: camera of the new view looks away", 1}};
+  expect_refusals("run", folder_.path(), refusals,
+                  [&](const Words& words) { return run(out_, joined(words, {"--quiet"})); });
 }
 
 TEST_F(RunPoses, SettingsInEffectNameTheFile) {
-  const ProcessResult result = run(out_, all_views({"--print-config"}));
-  EXPECT_EQ(result.exit_code, 0);
+  const ProcessResult result = succeeds(run(out_, all_views({"--print-config"})));
   EXPECT_THAT(result.out, HasSubstr("pose = '" + poses_ + "'"));
   write_file(folder_ / "job.toml", result.out);
-  const ProcessResult planned = run_vantage({"run", folder_ / "job.toml", "--dry-run"});
-  EXPECT_EQ(planned.exit_code, 0) << planned.err;
+  const ProcessResult planned = succeeds(run_vantage({"run", folder_ / "job.toml", "--dry-run"}));
   EXPECT_THAT(planned.out, HasSubstr("views/camera-1"));
   EXPECT_THAT(planned.out, Not(HasSubstr("path-2")));
 }
 
-}  // namespace run_poses_test
-}  // namespace vantage
+}  // namespace vantage::run_poses_test

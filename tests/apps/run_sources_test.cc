@@ -1,20 +1,11 @@
 // Runs whose input is damaged, incomplete or not what it was.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <numeric>
 
 #include "engine/io/video/video_io.h"
 #include "tests/apps/run_fixture.h"
 
-namespace vantage {
-namespace run_sources_test {
-
-namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::run_sources_test {
 
 constexpr int kBad = 7;
 
@@ -33,9 +24,7 @@ class RunSources : public RunTest {
   /// Without --keep-going the run ends there and says why; what is before it is done.
   void expect_stop_at(int frame, const std::string& source, const std::string& says) const {
     const ProcessResult result = run(out_, {"--quiet"});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr("frame " + std::to_string(frame)));
+    expect_one_line(result, 1, "run", "frame " + std::to_string(frame));
     EXPECT_THAT(result.err, HasSubstr(source));
     EXPECT_THAT(result.err, HasSubstr(says));
     EXPECT_EQ(journalled_frames(out_), numbers(0, frame));
@@ -44,15 +33,14 @@ class RunSources : public RunTest {
   }
 
   /// With --keep-going all others are made; the report and the journal tell of those left out.
-  void expect_skipped(const std::vector<int>& frames,
-                      const std::vector<std::string>& outputs = {}) const {
+  void expect_skipped(const std::vector<int>& frames, const Words& outputs = {}) const {
     const std::string report = folder_ / "report.json";
     const ProcessResult result =
         run(out_, joined(outputs, {"--resume", "--keep-going", "--report", report}));
     EXPECT_EQ(result.exit_code, 3) << result.err;
     EXPECT_EQ(journalled_frames(out_, true), frames);
     EXPECT_EQ(journalled_frames(out_).size(), kFrames - frames.size());
-    const nlohmann::json results = read_report(report)["results"];
+    const nlohmann::json results = read_json(report)["results"];
     ASSERT_EQ(results["skipped"].size(), frames.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
       EXPECT_EQ(results["skipped"][i]["frame"], frames[i]);
@@ -61,16 +49,11 @@ class RunSources : public RunTest {
   }
 
   /// The sources are whole again: what was skipped is made.
-  void expect_repaired(const FolderContent& expected,
-                       const std::vector<std::string>& outputs = {}) const {
+  void expect_repaired(const FolderContent& expected, const Words& outputs = {}) const {
     const std::string report = folder_ / "report.json";
-    const std::vector<std::string> again = joined(outputs, {"--resume", "--report", report});
-    const ProcessResult refused = run(out_, joined(again, {"--quiet"}));
-    EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_TRUE(is_one_line(refused, "run"));
-    EXPECT_THAT(refused.err, HasSubstr("the input was"));
-    const ProcessResult result = run(out_, joined(again, {"--force"}));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    const Words again = joined(outputs, {"--resume", "--report", report});
+    expect_one_line(run(out_, joined(again, {"--quiet"})), 1, "run", "the input was");
+    succeeds(run(out_, joined(again, {"--force"})));
     EXPECT_TRUE(same_files(results_in(out_), expected));
     EXPECT_THAT(journalled_frames(out_, true), IsEmpty());
   }
@@ -84,7 +67,7 @@ class RunSources : public RunTest {
     expect_skipped({kBad});
     write_file(file(side, kBad), whole);
     expect_repaired(expected);
-    EXPECT_EQ(read_report(folder_ / "report.json")["results"]["frames"], 1);
+    EXPECT_EQ(read_json(folder_ / "report.json")["results"]["frames"], 1);
   }
 
   std::string out_ = folder_ / "out";
@@ -126,7 +109,7 @@ TEST_F(InputRunSources, AFrameOfAnotherSizeOnBothSides) {
   write_file(file("left", kBad), left);
   write_file(file("right", kBad), right);
   expect_repaired(expected);
-  EXPECT_EQ(read_report(folder_ / "report.json")["results"]["frames"], 1);
+  EXPECT_EQ(read_json(folder_ / "report.json")["results"]["frames"], 1);
 }
 
 TEST_F(RunSources, BadFramesInVideosAreRepaired) {
@@ -151,7 +134,7 @@ TEST_F(RunSources, BadFramesInVideosAreRepaired) {
 }
 
 TEST_F(RunSources, BadFramesBeforeOthersThatBuildOnThem) {
-  const std::vector<std::string> outputs = {"--chunk-frames", "10", "--temporal-prior", "1"};
+  const Words outputs = {"--chunk-frames", "10", "--temporal-prior", "1"};
   const FolderContent expected = undisturbed(outputs);
   const std::string whole = frame_bytes("left", 3);
   write_file(file("left", 3), "");
@@ -159,30 +142,28 @@ TEST_F(RunSources, BadFramesBeforeOthersThatBuildOnThem) {
   write_file(file("left", 3), whole);
   // Those behind it in its chunk were made without it, so they are made again.
   expect_repaired(expected, outputs);
-  EXPECT_EQ(read_report(folder_ / "report.json")["results"]["frames"], 7);
+  EXPECT_EQ(read_json(folder_ / "report.json")["results"]["frames"], 7);
 }
 
 TEST_F(RunSources, FlickerIsMeasuredAgainBesideARepairedFrame) {
-  const std::vector<std::string> outputs = {"--measure-flicker"};
+  const Words outputs = {"--measure-flicker"};
   const std::string report = folder_ / "whole.json";
-  ASSERT_EQ(run(folder_ / "whole", joined(outputs, {"--report", report})).exit_code, 0);
+  succeeds(run(folder_ / "whole", joined(outputs, {"--report", report})));
   const std::string whole = frame_bytes("left", 3);
   write_file(file("left", 3), "");
   expect_skipped({3}, outputs);
   write_file(file("left", 3), whole);
   expect_repaired(results_in(folder_ / "whole"), outputs);
-  const nlohmann::json results = read_report(folder_ / "report.json")["results"];
+  const nlohmann::json results = read_json(folder_ / "report.json")["results"];
   EXPECT_EQ(results["frames"], 2);
-  EXPECT_EQ(results["flicker"], read_report(report)["results"]["flicker"]);
+  EXPECT_EQ(results["flicker"], read_json(report)["results"]["flicker"]);
 }
 
 TEST_F(InputRunSources, AllFramesBad) {
   for (int frame = 0; frame < kFrames; ++frame) {
     write_file(file("left", frame), "");
   }
-  const ProcessResult result = run(out_, {"--quiet", "--keep-going"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
+  expect_one_line(run(out_, {"--quiet", "--keep-going"}), 1, "run");
   EXPECT_FALSE(fs::exists(out_));
 }
 
@@ -190,17 +171,14 @@ TEST_F(RunSources, TheFirstFramesBad) {
   for (int frame = 0; frame < 3; ++frame) {
     write_file(file("left", frame), "");
   }
-  const ProcessResult result = run(out_, {"--quiet"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
-  EXPECT_THAT(result.err, HasSubstr("frame 0 "));
+  expect_one_line(run(out_, {"--quiet"}), 1, "run", "frame 0 ");
   expect_skipped({0, 1, 2});
 }
 
 /// A number that is missing is a frame that is: those behind it keep their partners.
 TEST_F(RunSources, AMissingNumberOfAPattern) {
   const FolderContent expected = undisturbed({});
-  const auto with_patterns = [&](const std::vector<std::string>& more) {
+  const auto with_patterns = [&](const Words& more) {
     return run_vantage(
         joined({"run", "--left", left_ + "/%06d.png", "--right", right_ + "/%06d.png", "-o", out_,
                 "--disparities=0:9", "--method", "ssd"},
@@ -208,15 +186,13 @@ TEST_F(RunSources, AMissingNumberOfAPattern) {
   };
   fs::rename(file("right", kBad), folder_ / "kept.png");
   const ProcessResult stopped = with_patterns({"--quiet"});
-  EXPECT_EQ(stopped.exit_code, 1);
-  EXPECT_TRUE(is_one_line(stopped, "run"));
-  EXPECT_THAT(stopped.err, HasSubstr("frame " + std::to_string(kBad)));
+  expect_one_line(stopped, 1, "run", "frame " + std::to_string(kBad));
   EXPECT_THAT(stopped.err, HasSubstr(file("right", kBad)));
   EXPECT_EQ(journalled_frames(out_), numbers(0, kBad));
   EXPECT_EQ(with_patterns({"--resume", "--keep-going"}).exit_code, 3);
   EXPECT_THAT(journalled_frames(out_, true), ElementsAre(kBad));
   fs::rename(folder_ / "kept.png", file("right", kBad));
-  EXPECT_EQ(with_patterns({"--resume", "--force"}).exit_code, 0);
+  succeeds(with_patterns({"--resume", "--force"}));
   EXPECT_TRUE(same_files(results_in(out_), expected));
 }
 
@@ -225,13 +201,11 @@ TEST_F(InputRunSources, UnequalLengths) {
     fs::remove(file("right", frame));
   }
   const ProcessResult result = run(out_, {"--quiet"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_TRUE(is_one_line(result, "run"));
-  EXPECT_THAT(result.err, HasSubstr("all 15 pairs are done"));
+  expect_one_line(result, 1, "run", "all 15 pairs are done");
   EXPECT_THAT(result.err, HasSubstr("5 frames more"));
   EXPECT_EQ(journalled_frames(out_), numbers(0, 15));
   EXPECT_EQ(run(out_, {"--resume", "--keep-going"}).exit_code, 3);
-  EXPECT_EQ(run(out_, {"--overwrite", "--frames", "0-14"}).exit_code, 0);
+  succeeds(run(out_, {"--overwrite", "--frames", "0-14"}));
 }
 
 class RunVideoSources : public RunSources {
@@ -258,8 +232,7 @@ class RunVideoSources : public RunSources {
   /// Runs on a right video of which not all can be read. Returns its first bad frame.
   [[nodiscard]] int lose_the_end(const std::string& extension) const {
     const ProcessResult stopped = run_videos(extension, {"--quiet"});
-    EXPECT_EQ(stopped.exit_code, 1);
-    EXPECT_TRUE(is_one_line(stopped, "run"));
+    expect_one_line(stopped, 1, "run");
     const std::vector<int> done = journalled_frames(out_);
     const auto first_bad = static_cast<int>(done.size());
     EXPECT_THAT(stopped.err, HasSubstr("right." + extension + ": frame " +
@@ -274,13 +247,10 @@ class RunVideoSources : public RunSources {
   }
   void repair_the_end(const std::string& extension, const std::string& whole, int first_bad) const {
     write_file(folder_ / ("right." + extension), whole);
-    const ProcessResult repaired =
-        run_videos(extension, {"--resume", "--force", "--report", folder_ / "report.json"});
-    EXPECT_EQ(repaired.exit_code, 0) << repaired.err;
-    EXPECT_EQ(read_report(folder_ / "report.json")["results"]["frames"], kFrames - first_bad);
+    succeeds(run_videos(extension, {"--resume", "--force", "--report", folder_ / "report.json"}));
+    EXPECT_EQ(read_json(folder_ / "report.json")["results"]["frames"], kFrames - first_bad);
   }
-  [[nodiscard]] ProcessResult run_videos(const std::string& extension,
-                                         const std::vector<std::string>& more) const {
+  [[nodiscard]] ProcessResult run_videos(const std::string& extension, const Words& more) const {
     return run_vantage(joined(
         {"run", "--left", folder_ / ("left." + extension), "--right",
          folder_ / ("right." + extension), "-o", out_, "--disparities=0:9", "--method", "ssd"},
@@ -291,7 +261,7 @@ class RunVideoSources : public RunSources {
 using InputVideoSources = RunVideoSources;
 
 TEST_F(InputVideoSources, AVideoWithDamageInTheMiddle) {
-  ASSERT_EQ(run_videos("mp4", {}).exit_code, 0);
+  succeeds(run_videos("mp4", {}));
   FolderContent expected = results_in(out_);
   fs::remove_all(out_);
   const std::string whole = read_file(folder_ / "right.mp4");
@@ -312,7 +282,7 @@ TEST_F(InputVideoSources, AVideoWithDamageInTheMiddle) {
 }
 
 TEST_F(InputVideoSources, AVideoThatEndsInTheMiddleOfAFrame) {
-  ASSERT_EQ(run_videos("mp4", {}).exit_code, 0);
+  succeeds(run_videos("mp4", {}));
   const FolderContent expected = results_in(out_);
   fs::remove_all(out_);
   const std::string whole = read_file(folder_ / "right.mp4");
@@ -327,16 +297,13 @@ TEST_F(InputVideoSources, AVideoThatEndsInTheMiddleOfAFrame) {
 
 /// What cannot be opened is refused before anything else happens.
 TEST_F(InputVideoSources, AVideoThatIsNoneOrWithoutIndex) {
-  ASSERT_EQ(run_videos("mp4", {"--frames", "0-9"}).exit_code, 0);
+  succeeds(run_videos("mp4", {"--frames", "0-9"}));
   const FolderContent finished = results_in(out_);
   const std::string whole = read_file(folder_ / "right.mp4");
   for (const std::size_t bytes : {0, 10, 100}) {
     write_file(folder_ / "right.mp4", whole.substr(0, bytes));
     for (const std::string opening : {"--resume", "--keep-going"}) {
-      const ProcessResult result = run_videos("mp4", {"--quiet", opening});
-      EXPECT_EQ(result.exit_code, 1);
-      EXPECT_TRUE(is_one_line(result, "run"));
-      EXPECT_THAT(result.err, HasSubstr("right.mp4"));
+      expect_one_line(run_videos("mp4", {"--quiet", opening}), 1, "run", "right.mp4");
       EXPECT_TRUE(same_files(results_in(out_), finished));
     }
   }
@@ -344,22 +311,19 @@ TEST_F(InputVideoSources, AVideoThatIsNoneOrWithoutIndex) {
 
 /// Nothing tells how many frames it had.
 TEST_F(InputVideoSources, ARawVideoThatEndsInTheMiddleOfAFrame) {
-  ASSERT_EQ(run_videos("y4m", {}).exit_code, 0);
+  succeeds(run_videos("y4m", {}));
   const FolderContent expected = results_in(out_);
   fs::remove_all(out_);
   const std::string whole = read_file(folder_ / "right.y4m");
   write_file(folder_ / "right.y4m", whole.substr(0, whole.size() * 6 / 10));
-  const ProcessResult stopped = run_videos("y4m", {"--quiet"});
-  EXPECT_EQ(stopped.exit_code, 1);
-  EXPECT_TRUE(is_one_line(stopped, "run"));
-  EXPECT_THAT(stopped.err, HasSubstr("right.y4m: frame 11 cannot be decoded"));
+  expect_one_line(run_videos("y4m", {"--quiet"}), 1, "run",
+                  "right.y4m: frame 11 cannot be decoded");
   EXPECT_EQ(journalled_frames(out_), numbers(0, 11));
   EXPECT_EQ(run_videos("y4m", {"--resume", "--keep-going"}).exit_code, 3);
   EXPECT_EQ(journalled_frames(out_, true), numbers(11, 12));
   write_file(folder_ / "right.y4m", whole);
-  EXPECT_EQ(run_videos("y4m", {"--resume", "--force"}).exit_code, 0);
+  succeeds(run_videos("y4m", {"--resume", "--force"}));
   EXPECT_TRUE(same_files(results_in(out_), expected));
 }
 
-}  // namespace run_sources_test
-}  // namespace vantage
+}  // namespace vantage::run_sources_test

@@ -1,34 +1,18 @@
 // Runs that read standard input and write a folder.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <regex>
 
 #include "engine/io/video/video_io.h"
 #include "tests/apps/stream_fixture.h"
 
-namespace vantage {
-namespace run_stream_folder_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
+namespace vantage::run_stream_folder_test {
 
 constexpr int kFilm = 12;
 constexpr int kFirstShot = 7;
 /// Frames with a cut; two videos in segments of five frames.
-const std::vector<std::string> kFilmOutputs = {"--save",
-                                               "disparity,preview,depth-video,comfort",
-                                               "--video",
-                                               "preview",
-                                               "--fps",
-                                               "24000/1001",
-                                               "--search-range",
-                                               "film",
-                                               "--chunk-frames",
-                                               "5",
-                                               "--disparities=0:9"};
+const Words kFilmOutputs = words(
+    "--save disparity,preview,depth-video,comfort --video preview --fps 24000/1001 "
+    "--search-range film --chunk-frames 5 --disparities=0:9");
 
 int frames_of(const fs::path& video) { return VideoReader(video).frame_count(); }
 
@@ -86,25 +70,23 @@ TEST_F(RunStreamFolders, AreAsOfAFile) {
   ASSERT_EQ(shell(command(options(pairs_, of_file_, kFilmOutputs))), 0) << err();
   EXPECT_TRUE(same_files(without_comfort(results_in(out_)), without_comfort(results_in(of_file_))));
   EXPECT_EQ(frames_of(out_ + "/preview.mp4"), kFilm);
-  nlohmann::json comfort = read_report(out_ + "/comfort.json");
-  nlohmann::json expected = read_report(of_file_ + "/comfort.json");
+  nlohmann::json comfort = read_json(out_ + "/comfort.json");
+  nlohmann::json expected = read_json(of_file_ + "/comfort.json");
   EXPECT_EQ(comfort["shots"].size(), 2U);
   EXPECT_EQ(comfort["input"], "standard input");
   comfort.erase("input");
   expected.erase("input");
   EXPECT_EQ(comfort, expected);
-  const ProcessResult verified = run_vantage({"verify", out_});
-  EXPECT_EQ(verified.exit_code, 0) << verified.err;
-  EXPECT_EQ(run_vantage({"merge", out_}).exit_code, 0);
+  succeeds(run_vantage({"verify", out_}));
+  succeeds(run_vantage({"merge", out_}));
   EXPECT_TRUE(same_files(without_comfort(results_in(out_)), without_comfort(results_in(of_file_))));
   // A folder holds one run.
   EXPECT_EQ(stream(out_, kFilmOutputs), 1);
   EXPECT_THAT(err(), HasSubstr("expected --overwrite"));
   EXPECT_EQ(stream(out_, joined(kFilmOutputs, {"--overwrite"})), 0) << err();
   // Without a stream there is nothing to continue.
-  const ProcessResult resumed = run_vantage({"run", "-o", out_, "--resume"});
-  EXPECT_EQ(resumed.exit_code, 2);
-  EXPECT_THAT(resumed.err, HasSubstr("standard input, which cannot be read again"));
+  expect_failure(run_vantage({"run", "-o", out_, "--resume"}), 2,
+                 "standard input, which cannot be read again");
 }
 
 TEST_F(RunStreamFolders, TakePartsAndStateAsOfAFile) {
@@ -138,7 +120,7 @@ TEST_F(RunStreamFolders, SearchTheRangeOfTheFirstPairs) {
   write_file(pairs_, y4m.substr(0, y4m.size() - (kFrames - kHeld) * frame_bytes()));
   ASSERT_EQ(shell(command(options(pairs_, of_file_, {}))), 0) << err();
   const auto range_in = [](const std::string& folder) {
-    return read_report(folder + "/.vantage/run.json")["settings"]["disparities"];
+    return read_json(folder + "/.vantage/run.json")["settings"]["disparities"];
   };
   EXPECT_EQ(range_in(out_), range_in(of_file_));
 }
@@ -156,16 +138,14 @@ TEST_F(RunStreamFolders, KeepWhatIsDoneWhenTheyEndEarly) {
   std::erase_if(expected, [](const auto& file) { return file.first >= "000008"; });
   EXPECT_TRUE(same_files(results_in(out_ + "/disparity"), expected));
   EXPECT_EQ(frames_of(out_ + "/depth-video.mkv"), 8);
-  EXPECT_EQ(read_report(out_ + "/comfort.json")["shots"].size(), 2U);
+  EXPECT_EQ(read_json(out_ + "/comfort.json")["shots"].size(), 2U);
   EXPECT_TRUE(leftovers_in(out_).empty());
-  EXPECT_EQ(run_vantage({"verify", out_}).exit_code, 0);
+  succeeds(run_vantage({"verify", out_}));
   // A frame that cannot be had is skipped, and the run ends.
   EXPECT_EQ(stream(out_, joined(kFilmOutputs, {"--overwrite", "--keep-going"})), 3);
   EXPECT_THAT(err(), HasSubstr("skipped frame 8: standard input frame 8: the stream"));
   write_file(out_ + "/disparity/000001.pfm", "damaged");
-  const ProcessResult verified = run_vantage({"verify", out_});
-  EXPECT_EQ(verified.exit_code, 1);
-  EXPECT_THAT(verified.err, HasSubstr("nothing but a new run"));
+  expect_failure(run_vantage({"verify", out_}), 1, "nothing but a new run");
 }
 
 TEST_F(RunStreamFolders, KeepWhatIsDoneWhenTheyAreStopped) {
@@ -186,14 +166,14 @@ TEST_F(RunStreamFolders, KeepWhatIsDoneWhenTheyAreStopped) {
                     " $(cat " + pid + "); sleep 0.1; } | " + process),
               kill ? 137 : 130)
         << err();
-    EXPECT_EQ(run_vantage({"verify", out_}).exit_code, 0);
+    succeeds(run_vantage({"verify", out_}));
     if (kill) {
-      EXPECT_EQ(run_vantage({"merge", out_}).exit_code, 0);
+      succeeds(run_vantage({"merge", out_}));
       EXPECT_GE(frames_of(out_ + "/preview.mp4"), 10);
-      EXPECT_EQ(read_report(out_ + "/comfort.json")["shots"].size(), 1U);
+      EXPECT_EQ(read_json(out_ + "/comfort.json")["shots"].size(), 1U);
     } else {
       EXPECT_EQ(frames_of(out_ + "/preview.mp4"), kFilm);
-      EXPECT_EQ(read_report(out_ + "/comfort.json")["shots"].size(), 2U);
+      EXPECT_EQ(read_json(out_ + "/comfort.json")["shots"].size(), 2U);
     }
   }
 }
@@ -220,5 +200,4 @@ TEST_F(RunStreamFolders, AreStoppedWhileThePipeIsSilent) {
   EXPECT_EQ(exit_code_of("-", "sleep 0.2"), 130) << err();
 }
 
-}  // namespace run_stream_folder_test
-}  // namespace vantage
+}  // namespace vantage::run_stream_folder_test

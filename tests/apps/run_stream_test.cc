@@ -1,46 +1,23 @@
 // Runs that read standard input and write standard output.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <cstdlib>
 
-#include "engine/io/maps/disparity_io.h"
 #include "engine/io/video/video_io.h"
+#include "tests/apps/sampling.h"
 #include "tests/apps/stream_fixture.h"
 
-namespace vantage {
-namespace run_stream_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
+namespace vantage::run_stream_test {
 
 class RunStreams : public StreamTest {
  protected:
-  Words depth_ = {"--stereo",
-                  "-",
-                  "--packing",
-                  "sbsl",
-                  "--raw-video",
-                  "128x48",
-                  "--save",
-                  "depth-video",
-                  "--depth-range",
-                  "-1:10",
-                  "--disparities=0:9",
-                  "--method",
-                  "ssd",
-                  "--stream-format",
-                  "rawvideo",
-                  "-o",
-                  "-",
-                  "--quiet"};
+  Words depth_ = words(
+      "--stereo - --packing sbsl --raw-video 128x48 --save depth-video --depth-range -1:10 "
+      "--disparities=0:9 --method ssd --stream-format rawvideo -o - --quiet");
 };
 
 TEST_F(RunStreams, RawPairsInRawDepthOut) {
   constexpr int kFew = 5;
-  ASSERT_EQ(run(folder_ / "maps", {"--frames", "0-4"}).exit_code, 0);
+  succeeds(run(folder_ / "maps", {"--frames", "0-4"}));
   write_file(folder_ / "pairs.rgb", raw_pairs(kFew));
   ASSERT_EQ(shell("cat " + (folder_ / "pairs.rgb") + " | " + command(depth_) + " >" +
                   (folder_ / "depth.raw")),
@@ -113,8 +90,7 @@ TEST_F(RunStreams, StreamsThatEndEarly) {
   EXPECT_EQ(shell(command(depth_) + " </dev/null >" + (folder_ / "out.raw")), 1);
   EXPECT_THAT(err(), HasSubstr("standard input"));
   write_file(folder_ / "pairs.rgb", raw_pairs(3));
-  const Words search = {"--stereo", "-",   "--packing", "sbsl", "--disparities=0:9",
-                        "--method", "ssd", "-o",        "-"};
+  const Words search = words("--stereo - --packing sbsl --disparities=0:9 --method ssd -o -");
   const std::string to_y4m = command(
       joined(search, {"--raw-video", "128x48", "--save", "stereo", "--stereo-packing", "sbsl"}));
   ASSERT_EQ(shell(to_y4m + " <" + (folder_ / "pairs.rgb") + " >" + (folder_ / "whole.y4m")), 0)
@@ -144,7 +120,7 @@ TEST_F(RunStreams, StreamsThatEndEarly) {
 }
 
 TEST_F(RunStreams, WrongOptions) {
-  const std::vector<std::pair<Words, std::string>> cases = {
+  const std::vector<Refusal> refusals = {
       {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--resume"},
        "standard input, which cannot be read again"},
       {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--force"},
@@ -177,15 +153,8 @@ TEST_F(RunStreams, WrongOptions) {
        "--raw-video has no effect"},
       {{"--stereo", "-", "--packing", "sbsl", "-o", "-", "--save", "preview", "--raw-video", "4"},
        "--raw-video is '4', expected a size"}};
-  for (const auto& [options, message] : cases) {
-    Words all = options;
-    all.insert(all.begin(), "run");
-    const ProcessResult result = run_vantage(all);
-    EXPECT_EQ(result.exit_code, 2) << message << result.err;
-    EXPECT_TRUE(is_one_line(result, "run"));
-    EXPECT_THAT(result.err, HasSubstr(message));
-  }
+  expect_refusals("run", folder_.path(), refusals,
+                  [&](const Words& words) { return run_vantage(joined({"run"}, words)); });
 }
 
-}  // namespace run_stream_test
-}  // namespace vantage
+}  // namespace vantage::run_stream_test

@@ -1,29 +1,18 @@
 // Runs that are killed or stopped while they look for the shots of their input.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <csignal>
 #include <thread>
 
 #include "tests/apps/preloaded.h"
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
-#include "tests/test_paths.h"
 
-namespace vantage {
-namespace run_survey_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::run_survey_test {
 
 constexpr int kKilled = 128 + SIGKILL;
 
-const std::vector<std::string> kShotOutputs = {
-    "--save",          "preview,views", "--view",          "0.5",
-    "--intensity-fit", "shot",          "--preview-range", "shot"};
+const Words kShotOutputs =
+    words("--save preview,views --view 0.5 --intensity-fit shot --preview-range shot");
 
 class Survey : public RunTest {
  protected:
@@ -37,7 +26,7 @@ using SlowSurvey = Survey;
 /// journal's, and those that make the table of shots.
 TEST_F(SlowSurvey, MayBeKilledAtAnyCall) {
   SCOPED_TRACE(test::sample_name());
-  const std::vector<std::string> all = arguments(out_, kShotOutputs);
+  const Words all = arguments(out_, kShotOutputs);
   const FileCalls calls = calls_of(all, out_);
   const FolderContent expected = results_in(out_);
   const std::string table = read_file(shots_);
@@ -55,8 +44,7 @@ TEST_F(SlowSurvey, MayBeKilledAtAnyCall) {
     if (call > links[1]) {
       EXPECT_EQ(read_file(shots_), table);
     }
-    const ProcessResult resumed = run(out_, joined(kShotOutputs, {"--resume"}));
-    ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+    succeeds(run(out_, joined(kShotOutputs, {"--resume"})));
     EXPECT_TRUE(same_files(results_in(out_), expected));
     EXPECT_EQ(read_file(shots_), table);
     EXPECT_THAT(leftovers_in(out_), IsEmpty());
@@ -65,14 +53,12 @@ TEST_F(SlowSurvey, MayBeKilledAtAnyCall) {
 
 /// What one part has found is what all others go by, whatever they would have found themselves.
 TEST_F(Survey, IsMadeOnceForAllParts) {
-  ASSERT_EQ(run(out_, joined(kShotOutputs, {"--shard", "1/2"})).exit_code, 0);
+  succeeds(run(out_, joined(kShotOutputs, {"--shard", "1/2"})));
   const std::string table = read_file(shots_);
   const auto time = fs::last_write_time(shots_);
-  const ProcessResult other = run(out_, joined(kShotOutputs, {"--shard", "2/2"}));
-  ASSERT_EQ(other.exit_code, 0) << other.err;
+  succeeds(run(out_, joined(kShotOutputs, {"--shard", "2/2"})));
   EXPECT_EQ(fs::last_write_time(shots_), time);
-  const ProcessResult merged = run_vantage({"merge", out_});
-  EXPECT_EQ(merged.exit_code, 0) << merged.err;
+  succeeds(run_vantage({"merge", out_}));
   EXPECT_EQ(read_file(shots_), table);
   EXPECT_TRUE(same_files(results_in(out_), undisturbed(kShotOutputs)));
 }
@@ -85,7 +71,7 @@ TEST_F(Survey, MayBeInterrupted) {
     fs::remove(right_ + "/" + frame_file(frame));
   }
   // Samples then take long, compared with everything before them.
-  const std::vector<std::string> outputs =
+  const Words outputs =
       joined(kShotOutputs, {"--method", "membrane", "--iterations",
                             test_paths::is_sanitized() ? "300" : "2000", "--progress", "bar"});
   const FolderContent expected = undisturbed(outputs);
@@ -102,10 +88,8 @@ TEST_F(Survey, MayBeInterrupted) {
   EXPECT_THAT(results_in(out_), IsEmpty());
   EXPECT_FALSE(fs::exists(shots_));
   EXPECT_THAT(leftovers_in(out_), IsEmpty());
-  const ProcessResult resumed = run(out_, joined(outputs, {"--resume"}));
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  succeeds(run(out_, joined(outputs, {"--resume"})));
   EXPECT_TRUE(same_files(results_in(out_), expected));
 }
 
-}  // namespace run_survey_test
-}  // namespace vantage
+}  // namespace vantage::run_survey_test

@@ -1,26 +1,9 @@
 // Runs with videos that go on where they stopped, runs that are resumed by their folder alone, and
 // results that are verified.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
-#include "tests/test_paths.h"
 
-namespace vantage {
-namespace run_video_resume_test {
-
-namespace fs = std::filesystem;
-using testing::ContainsRegex;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
-using Words = std::vector<std::string>;
+namespace vantage::run_video_resume_test {
 
 class ResumedByFolder : public RunTest {
  protected:
@@ -67,28 +50,26 @@ TEST_F(VideosResumed, FilesAreKeptAndReadBackWhereTheyHoldWhatVideosShow) {
       {{"--save", "disparity,views", "--view", "0.5", "--video", "views"}, false},
       {{"--save", "disparity,unmatched", "--video", "unmatched"}, false},
       {{"--save", "disparity,preview", "--video", "preview", "--temporal-prior", "1"}, false},
-      {{"--save", "disparity,preview", "--video", "preview", "--reference", "right", "--format",
-        "exr", "--fill", "none"},
+      {words("--save disparity,preview --video preview --reference right --format exr --fill none"),
        true},
-      {{"--save", "disparity,right-disparity,preview,views", "--view", "0.5", "--video", "preview",
-        "--measure-flicker", "--chunk-frames", "7", "--format", "tiff"},
+      {words("--save disparity,right-disparity,preview,views --view 0.5 --video preview "
+             "--measure-flicker --chunk-frames 7 --format tiff"),
        true},
-      {{"--save", "disparity,right-disparity,views,stereo", "--view", "0.5", "--video",
-        "views,stereo", "--stereo-views", "0.25,1", "--format", "npy"},
+      {words("--save disparity,right-disparity,views,stereo --view 0.5 --video views,stereo "
+             "--stereo-views 0.25,1 --format npy"),
        true}};
   SCOPED_TRACE(test::sample_name());
   for (const auto& [outputs, reads_maps] : sampled(cases, test_paths::is_sanitized() ? 0 : 1, 40)) {
     SCOPED_TRACE(testing::PrintToString(outputs));
-    ASSERT_EQ(run(out_, joined(outputs, {"--report", report_})).exit_code, 0);
+    succeeds(run(out_, joined(outputs, {"--report", report_})));
     const FolderContent expected = results_in(out_);
-    const auto flicker = read_report(report_)["results"].value("flicker", nlohmann::json());
+    const auto flicker = read_json(report_)["results"].value("flicker", nlohmann::json());
     stop_early();
-    const ProcessResult resumed = resume({"--report", report_});
-    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    const ProcessResult resumed = succeeds(resume({"--report", report_}));
     EXPECT_THAT(resumed.err,
                 HasSubstr("12 were already done (12 of them added to the videos now)"));
     EXPECT_TRUE(same_files(results_in(out_), expected));
-    const nlohmann::json report = read_report(report_);
+    const nlohmann::json report = read_json(report_);
     EXPECT_EQ(report["results"]["frames"], kFrames - kKept);
     EXPECT_EQ(report["results"]["pictures_again"], kKept);
     EXPECT_EQ(report["results"].value("flicker", nlohmann::json()), flicker);
@@ -98,24 +79,24 @@ TEST_F(VideosResumed, FilesAreKeptAndReadBackWhereTheyHoldWhatVideosShow) {
 }
 
 TEST_F(VideosResumed, WhereAllMapsAreThereNothingIsMatched) {
-  ASSERT_EQ(run(out_, {"--save", "disparity,preview", "--video", "preview"}).exit_code, 0);
+  succeeds(run(out_, {"--save", "disparity,preview", "--video", "preview"}));
   const FolderContent expected = results_in(out_);
   fs::remove(out_ + "/preview.mp4");
-  EXPECT_EQ(resume({"--report", report_}).exit_code, 0);
+  succeeds(resume({"--report", report_}));
   EXPECT_TRUE(same_files(results_in(out_), expected));
-  const nlohmann::json report = read_report(report_);
+  const nlohmann::json report = read_json(report_);
   EXPECT_EQ(report["results"]["frames"], 0);
   EXPECT_FALSE(report["seconds"]["stages"].contains("match left"));
 }
 
 TEST_F(VideosResumed, AFileThatWasDamagedIsMadeAnew) {
-  ASSERT_EQ(run(out_, {"--save", "disparity,preview", "--video", "preview"}).exit_code, 0);
+  succeeds(run(out_, {"--save", "disparity,preview", "--video", "preview"}));
   const FolderContent expected = results_in(out_);
   stop_early();
   damage("disparity/000003.pfm");
-  EXPECT_EQ(resume().exit_code, 0);
+  succeeds(resume());
   EXPECT_TRUE(same_files(results_in(out_), expected));
-  EXPECT_EQ(verify().exit_code, 0);
+  succeeds(verify());
 }
 
 TEST_F(ResumedByFolder, SettingsAndInputsAreThoseOfTheRun) {
@@ -125,31 +106,27 @@ TEST_F(ResumedByFolder, SettingsAndInputsAreThoseOfTheRun) {
                           "7",      "--offset",        "1",      "--keep-going"};
   const FolderContent expected = undisturbed(settings);
   const std::string good = frame_bytes("left", 4);
-  ASSERT_EQ(run(out_, settings).exit_code, 0);
+  succeeds(run(out_, settings));
   fs::remove(poses);
   fs::remove(out_ + "/disparity/000004.pfm");
-  const ProcessResult resumed = resume();
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  const ProcessResult resumed = succeeds(resume());
   EXPECT_THAT(resumed.err, HasSubstr("run: 1 frame of"));
   EXPECT_TRUE(same_files(results_in(out_), expected));
   // Options go before what is stored; what changes results is refused as ever.
-  const ProcessResult refused = resume({"--window", "9", "--quiet"});
-  EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.err, HasSubstr("holds a different run: window was 7, now 9"));
-  EXPECT_EQ(resume({"--threads", "2", "--quiet"}).exit_code, 0);
-  const ProcessResult none = run_vantage({"run", "-o", folder_ / "none", "--resume"});
-  EXPECT_EQ(none.exit_code, 1);
-  EXPECT_THAT(none.err, HasSubstr("holds no run"));
+  expect_failure(resume({"--window", "9", "--quiet"}), 1,
+                 "holds a different run: window was 7, now 9");
+  succeeds(resume({"--threads", "2", "--quiet"}));
+  expect_failure(run_vantage({"run", "-o", folder_ / "none", "--resume"}), 1, "holds no run");
 }
 
 TEST_F(ResumedByFolder, ThePartThatWasBegunIsThatOfTheOnlyJournal) {
-  ASSERT_EQ(run(out_, {"--frames", "3-9", "--shard", "1/1"}).exit_code, 0);
+  succeeds(run(out_, {"--frames", "3-9", "--shard", "1/1"}));
   fs::remove(out_ + "/disparity/000005.pfm");
   EXPECT_THAT(resume().err, HasSubstr("run: 1 frame of"));
   EXPECT_EQ(results_in(out_).size(), 7U);
   EXPECT_THAT(resume({"--frames", "0-4"}).err, HasSubstr("run: 3 frames of"));
   // Several parts: the whole.
-  EXPECT_EQ(resume().exit_code, 0);
+  succeeds(resume());
   EXPECT_TRUE(same_files(results_in(out_), undisturbed({})));
 }
 
@@ -160,39 +137,34 @@ TEST_F(ResumedByFolder, BadFramesAreSkippedAgain) {
 }
 
 TEST_F(ResumedByFolder, VerificationFindsDamageAndResumingRepairsIt) {
-  const Words outputs = {"--save",  "disparity,preview", "--video",
-                         "preview", "--chunk-frames",    "8"};
+  const Words outputs = words("--save disparity,preview --video preview --chunk-frames 8");
   const FolderContent expected = undisturbed(outputs);
-  ASSERT_EQ(run(out_, outputs).exit_code, 0);
-  const ProcessResult whole = verify();
-  EXPECT_EQ(whole.exit_code, 0);
+  succeeds(run(out_, outputs));
+  const ProcessResult whole = succeeds(verify());
   EXPECT_THAT(whole.err, ContainsRegex("verify: 21 files with .* MB are unchanged\n$"));
   for (const std::string name : {"disparity/000002.pfm", "disparity/000017.pfm", "preview.mp4"}) {
     damage(name);
   }
   fs::resize_file(out_ + "/disparity/000009.pfm", 12);
   const ProcessResult damaged = verify({"--report", report_, "--quiet"});
-  EXPECT_EQ(damaged.exit_code, 1);
-  EXPECT_TRUE(is_one_line(damaged, "verify"));
+  expect_one_line(damaged, 1, "verify");
   EXPECT_THAT(damaged.err, HasSubstr("disparity/000002.pfm is not as it was written (and 3 more"));
   EXPECT_EQ(damaged.out,
             "disparity/000002.pfm is not as it was written\n"
             "disparity/000009.pfm has 12 bytes, expected 12302\n"
             "disparity/000017.pfm is not as it was written\n"
             "preview.mp4 is not as it was written\n");
-  EXPECT_EQ(read_report(report_)["results"]["damaged"].size(), 4U);
-  const ProcessResult merged = run_vantage({"merge", out_, "--verify"});
-  EXPECT_EQ(merged.exit_code, 1);
-  EXPECT_THAT(merged.err, HasSubstr("disparity/000002.pfm"));
+  EXPECT_EQ(read_json(report_)["results"]["damaged"].size(), 4U);
+  expect_failure(run_vantage({"merge", out_, "--verify"}), 1, "disparity/000002.pfm");
   EXPECT_EQ(verify({"--remove"}).exit_code, 1);
-  EXPECT_EQ(resume().exit_code, 0);
+  succeeds(resume());
   EXPECT_TRUE(same_files(results_in(out_), expected));
-  EXPECT_EQ(verify().exit_code, 0);
-  EXPECT_EQ(run_vantage({"merge", out_, "--verify"}).exit_code, 0);
+  succeeds(verify());
+  succeeds(run_vantage({"merge", out_, "--verify"}));
 }
 
 TEST_F(ResumedByFolder, LinesOfTheJournalThatWereChangedAreNotBelieved) {
-  ASSERT_EQ(run(out_).exit_code, 0);
+  succeeds(run(out_));
   const std::string journal = out_ + "/.vantage/frames-all.jsonl";
   const std::string whole = read_file(journal);
   const std::size_t line = whole.find("{\"frame\":3,");
@@ -203,15 +175,11 @@ TEST_F(ResumedByFolder, LinesOfTheJournalThatWereChangedAreNotBelieved) {
         std::string(record).replace(record.find("disparity"), other.size(), other)}) {
     write_file(journal, std::string(whole).replace(line, record.size(), change));
     fs::remove(out_ + "/disparity/000003.pfm");
-    const ProcessResult merged = run_vantage({"merge", out_});
-    EXPECT_EQ(merged.exit_code, 1);
-    EXPECT_THAT(merged.err, HasSubstr("1 of 20 frames are missing (3)"));
-    const ProcessResult unverified = verify();
-    EXPECT_EQ(unverified.exit_code, 1);
-    EXPECT_THAT(unverified.err, HasSubstr("1 line of the journal is damaged"));
-    EXPECT_EQ(resume().exit_code, 0);
+    expect_failure(run_vantage({"merge", out_}), 1, "1 of 20 frames are missing (3)");
+    expect_failure(verify(), 1, "1 line of the journal is damaged");
+    succeeds(resume());
     EXPECT_TRUE(same_files(results_in(out_), undisturbed({})));
-    EXPECT_EQ(verify().exit_code, 0);
+    succeeds(verify());
   }
 }
 
@@ -224,31 +192,23 @@ TEST_F(ResumedByFolder, NamesNeedNotBeUtf8) {
   const Words input = {"--left",       place + "/left", "--right", place + "/right",    "-o",
                        place + "/out", "--frames",      "0-2",     "--disparities=0:9", "--method",
                        "ssd"};
-  ASSERT_EQ(run_vantage(joined({"run"}, input)).exit_code, 0);
+  succeeds(run_vantage(joined({"run"}, input)));
   fs::remove(place + "/out/disparity/000001.pfm");
-  const ProcessResult resumed = run_vantage({"run", "-o", place + "/out", "--resume"});
-  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  succeeds(run_vantage({"run", "-o", place + "/out", "--resume"}));
   EXPECT_TRUE(fs::exists(place + "/out/disparity/000001.pfm"));
 
   const std::string config = folder_ / "config.toml";
   write_file(config, run_vantage(joined({"run", "--print-config"}, input)).out);
   EXPECT_THAT(read_file(config), HasSubstr("x\\xff/left"));
-  EXPECT_EQ(run_vantage({"run", "--config", config, "--resume"}).exit_code, 0);
+  succeeds(run_vantage({"run", "--config", config, "--resume"}));
 
-  ASSERT_EQ(run_vantage(joined({"submit", "--no-submit", "--shards", "1"}, input)).exit_code, 0);
-  const ProcessResult task =
-      run_vantage({"run", "--config", place + "/out/.vantage/slurm/job.toml", "--resume"});
-  EXPECT_EQ(task.exit_code, 0) << task.err;
+  succeeds(run_vantage(joined({"submit", "--no-submit", "--shards", "1"}, input)));
+  succeeds(run_vantage({"run", "--config", place + "/out/.vantage/slurm/job.toml", "--resume"}));
 
   const std::string scene = folder_ / "scene";
-  ASSERT_EQ(run_vantage({"scene", "build", "--images", place + "/left/00000[0-1].png", "-o", scene,
-                         "--disparities=0:9", "--method", "ssd"})
-                .exit_code,
-            0);
-  const ProcessResult view =
-      run_vantage({"scene", "view", scene, "--at", "0.5,0", "-o", folder_ / "view.png"});
-  EXPECT_EQ(view.exit_code, 0) << view.err;
+  succeeds(run_vantage({"scene", "build", "--images", place + "/left/00000[0-1].png", "-o", scene,
+                        "--disparities=0:9", "--method", "ssd"}));
+  succeeds(run_vantage({"scene", "view", scene, "--at", "0.5,0", "-o", folder_ / "view.png"}));
 }
 
-}  // namespace run_video_resume_test
-}  // namespace vantage
+}  // namespace vantage::run_video_resume_test

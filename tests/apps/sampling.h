@@ -1,13 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <random>
 #include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "tests/apps/run_fixture.h"
 #include "tests/test_paths.h"
@@ -65,57 +61,26 @@ std::vector<Case> sampled(const std::vector<Case>& cases, int count, std::uint32
   return chosen;
 }
 
-/// One of the cases of each group, in the order of the first ones. `group_of` names a case's group,
-/// such as the option it is about.
-template <typename Case, typename GroupOf>
-std::vector<Case> sampled_of_each(const std::vector<Case>& cases, const GroupOf& group_of,
-                                  std::uint32_t stream) {
-  if (test::runs_everything()) {
-    return cases;
-  }
-  std::vector<std::pair<std::string, std::vector<Case>>> groups;
-  for (const Case& one : cases) {
-    const std::string name = group_of(one);
-    auto group =
-        std::ranges::find_if(groups, [&](const auto& other) { return other.first == name; });
-    if (group == groups.end()) {
-      group = groups.insert(groups.end(), {name, {}});
-    }
-    group->second.push_back(one);
-  }
-  std::vector<Case> chosen;
-  SampledNumbers numbers(stream);
-  for (const auto& [name, members] : groups) {
-    chosen.push_back(members[numbers.below(members.size())]);
-  }
-  return chosen;
-}
+/// What a command refuses: the words that follow it, and what its one line says.
+struct Refusal {
+  Words words;
+  std::string says;
+  int exit_code = 2;
+};
 
-/// The option that a command line is about: the last one, without a value joined to it.
-inline std::string last_option(const std::vector<std::string>& arguments) {
-  for (std::size_t i = arguments.size(); i-- > 0;) {
-    const std::string& text = arguments[i];
-    if (text.size() > 1 && text[0] == '-' && (text[1] < '0' || text[1] > '9')) {
-      return text.substr(0, text.find('='));
-    }
+/// Each of them is refused in one line and leaves `folder` as it was; `run` starts the command with
+/// the words. Under a sanitizer, where each process takes long to begin, a sample of them.
+template <typename Run>
+void expect_refusals(const std::string& command, const fs::path& folder,
+                     const std::vector<Refusal>& refusals, const Run& run) {
+  SCOPED_TRACE(test::sample_name());
+  const Words before = files_below(folder);
+  const auto stream = static_cast<std::uint32_t>(refusals.size());
+  for (const Refusal& refusal :
+       test_paths::is_sanitized() ? sampled(refusals, 10, stream) : refusals) {
+    expect_one_line(run(refusal.words), refusal.exit_code, command, refusal.says);
   }
-  return {};
-}
-
-/// Command lines that are refused, each for its last option: all of them, as every bound is checked
-/// by code of its own; under a sanitizer, where each process takes long to begin, those of some
-/// options, one each.
-template <typename Case, typename ArgumentsOf>
-std::vector<Case> sampled_command_lines(const std::vector<Case>& cases,
-                                        const ArgumentsOf& arguments_of) {
-  if (!test_paths::is_sanitized()) {
-    return cases;
-  }
-  const auto stream = static_cast<std::uint32_t>(cases.size());
-  return sampled(
-      sampled_of_each(
-          cases, [&](const Case& one) { return last_option(arguments_of(one)); }, stream),
-      10, stream);
+  EXPECT_EQ(files_below(folder), before);
 }
 
 }  // namespace vantage

@@ -3,12 +3,9 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
-#include <string>
 #include <variant>
-#include <vector>
 
 #include "engine/image/stereo_packing.h"
-#include "engine/io/images/photograph_io.h"
 #include "tests/apps/run_fixture.h"
 #include "tests/test_paths.h"
 
@@ -17,8 +14,6 @@ namespace vantage {
 /// Runs of the program in pipes of a shell.
 class StreamTest : public RunTest {
  protected:
-  using Words = std::vector<std::string>;
-
   /// A shell command of the program.
   [[nodiscard]] static std::string command(const Words& arguments) {
     std::string line = "XDG_CONFIG_HOME=/none '" + test_paths::vantage_binary() + "' run";

@@ -1,7 +1,5 @@
 // Descriptors that cannot be written to, and limits of what can be.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -9,17 +7,12 @@
 #include "tests/apps/run_fixture.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace streams_test {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::streams_test {
 
 class Streams : public RunTest {
  protected:
   /// Exit code of the program with `arguments` in a shell that adds `redirection`.
-  [[nodiscard]] int shell(const std::vector<std::string>& arguments, const std::string& redirection,
+  [[nodiscard]] int shell(const Words& arguments, const std::string& redirection,
                           const std::string& before = "") const {
     std::string line = before + "XDG_CONFIG_HOME=/none '" + test_paths::vantage_binary() + "'";
     for (const std::string& word : arguments) {
@@ -28,7 +21,7 @@ class Streams : public RunTest {
     const int status = std::system((line + " " + redirection).c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
-  [[nodiscard]] std::vector<std::string> match() const {
+  [[nodiscard]] Words match() const {
     return {"match", left_ + "/000000.png", right_ + "/000000.png", "-o",
             map_,    "--disparities=0:9"};
   }
@@ -69,5 +62,4 @@ TEST_F(Streams, AFileThatWouldBeTooLargeIsAnError) {
   EXPECT_THAT(leftovers_in(folder_.path()), IsEmpty());
 }
 
-}  // namespace streams_test
-}  // namespace vantage
+}  // namespace vantage::streams_test

@@ -1,21 +1,11 @@
 // --bind, and machines with several NUMA nodes as hwloc simulates them: results are the same.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sched.h>
 
-#include <nlohmann/json.hpp>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "tests/apps/run_fixture.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage {
-namespace thread_binding_test {
+namespace vantage::thread_binding_test {
 
 using nlohmann::json;
-using testing::HasSubstr;
 
 const std::string kTwoNodes = "HWLOC_SYNTHETIC=node:2 core:4 pu:2";
 
@@ -23,8 +13,8 @@ class MatchOnNodes : public PairTest {
  protected:
   /// `machine`: a variable for hwloc; empty for this one.
   [[nodiscard]] ProcessResult match_on(const std::string& machine, const std::string& out,
-                                       const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> environment;
+                                       const Words& more = {}) const {
+    Words environment;
     if (!machine.empty()) {
       environment.push_back(machine);
     }
@@ -36,11 +26,11 @@ class MatchOnNodes : public PairTest {
 
 TEST_F(MatchOnNodes, ResultsAreTheSame) {
   const std::string expected_map = folder_ / "expected.pfm";
-  ASSERT_EQ(match_on("", expected_map, {"--executor", "serial"}).exit_code, 0);
+  succeeds(match_on("", expected_map, {"--executor", "serial"}));
   const std::string expected = read_file(expected_map);
   struct Way {
     std::string machine;
-    std::vector<std::string> options;
+    Words options;
   };
   const std::vector<Way> ways = {
       {"", {"--bind", "core"}},
@@ -56,18 +46,16 @@ TEST_F(MatchOnNodes, ResultsAreTheSame) {
   SCOPED_TRACE(test::sample_name());
   for (const Way& way : sampled(ways, 4, 9)) {
     const std::string map = folder_ / "map.pfm";
-    const ProcessResult result = match_on(way.machine, map, way.options);
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    succeeds(match_on(way.machine, map, way.options));
     EXPECT_EQ(read_file(map), expected) << way.machine << testing::PrintToString(way.options);
   }
 }
 
 TEST_F(MatchOnNodes, ReportsTellWhereThreadsRan) {
-  const auto binding = [&](const std::string& machine, const std::vector<std::string>& options) {
+  const auto binding = [&](const std::string& machine, const Words& options) {
     const std::string report = folder_ / "r.json";
     const ProcessResult result =
-        match_on(machine, folder_ / "map.pfm", joined({"--report", report}, options));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+        succeeds(match_on(machine, folder_ / "map.pfm", joined({"--report", report}, options)));
     return std::pair(json::parse(read_file(report)).at("binding"), result.err);
   };
   const json nodes = {{{"node", 0}, {"threads", 8}}, {{"node", 1}, {"threads", 8}}};
@@ -84,10 +72,8 @@ TEST_F(MatchOnNodes, ReportsTellWhereThreadsRan) {
 
 TEST_F(MatchOnNodes, TracesHaveTheThreadsOfAllNodes) {
   const std::string report = folder_ / "r.json";
-  ASSERT_EQ(match_on("HWLOC_SYNTHETIC=node:2 core:1 pu:1", folder_ / "map.pfm",
-                     {"--trace", folder_ / "t.json", "--report", report})
-                .exit_code,
-            0);
+  succeeds(match_on("HWLOC_SYNTHETIC=node:2 core:1 pu:1", folder_ / "map.pfm",
+                    {"--trace", folder_ / "t.json", "--report", report}));
   const json totals = json::parse(read_file(report)).at("trace");
   double all_s = 0;
   int in_pool = 0;
@@ -104,10 +90,8 @@ TEST_F(MatchOnNodes, TracesHaveTheThreadsOfAllNodes) {
 
 TEST_F(MatchOnNodes, SerialExecutorsAreNotBound) {
   const std::string out = folder_ / "map.pfm";
-  const ProcessResult result = match_on("", out, {"--executor", "serial", "--bind", "core"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_TRUE(is_one_line(result, "match"));
-  EXPECT_THAT(result.err, HasSubstr("bind is core, expected auto or none"));
+  expect_one_line(match_on("", out, {"--executor", "serial", "--bind", "core"}), 2, "match",
+                  "bind is core, expected auto or none");
   EXPECT_THAT(match_on("", out, {"--bind", "socket"}).err,
               HasSubstr("--bind is 'socket', expected one of none|node|core"));
 }
@@ -122,21 +106,20 @@ class RunOnNodes : public RunTest {};
 
 TEST_F(RunOnNodes, ResultsAreTheSame) {
   const FolderContent expected = undisturbed(kImageOutputs);
-  using Way = std::pair<std::string, std::vector<std::string>>;
+  using Way = std::pair<std::string, Words>;
   std::vector<Way> ways;
   for (const std::string machine : {"node:2 core:2 pu:1", "node:3 core:1 pu:1", "node:2 core:4"}) {
-    for (const std::vector<std::string>& options :
-         {std::vector<std::string>{}, {"--in-flight", "1"}, {"--bind", "core", "--threads", "5"}}) {
+    for (const Words& options :
+         {Words{}, {"--in-flight", "1"}, {"--bind", "core", "--threads", "5"}}) {
       ways.emplace_back(machine, options);
     }
   }
   SCOPED_TRACE(test::sample_name());
   const std::string out = folder_ / "out";
   for (const auto& [machine, options] : sampled(ways, 2, 10)) {
-    std::filesystem::remove_all(out);
-    const ProcessResult result =
-        run_vantage(arguments(out, joined(kImageOutputs, options)), {"HWLOC_SYNTHETIC=" + machine});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
+    fs::remove_all(out);
+    succeeds(run_vantage(arguments(out, joined(kImageOutputs, options)),
+                         {"HWLOC_SYNTHETIC=" + machine}));
     EXPECT_TRUE(same_files(results_in(out), expected))
         << machine << testing::PrintToString(options);
   }
@@ -172,5 +155,4 @@ TEST(InfoOnNodes, CountsWhatTheAffinityMaskLeaves) {
   EXPECT_EQ(info.at("hardware_threads"), 1);
 }
 
-}  // namespace thread_binding_test
-}  // namespace vantage
+}  // namespace vantage::thread_binding_test

@@ -1,21 +1,12 @@
 // --trace: Chrome trace events that nest and account for all threads.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "tests/apps/run_fixture.h"
 
-namespace vantage {
-namespace trace_file_test {
+namespace vantage::trace_file_test {
 
 using nlohmann::json;
-using testing::HasSubstr;
 
 struct Slice {
   double begin_us = 0;
@@ -90,8 +81,8 @@ class TraceFile : public RunTest {
   TraceFile() {
     for (int frame = kFrames; frame < kTracedFrames; ++frame) {
       for (const std::string& side : {left_, right_}) {
-        std::filesystem::create_hard_link(side + "/" + frame_file(frame % kFrames),
-                                          side + "/" + frame_file(frame));
+        fs::create_hard_link(side + "/" + frame_file(frame % kFrames),
+                             side + "/" + frame_file(frame));
       }
     }
   }
@@ -103,16 +94,14 @@ class TraceFile : public RunTest {
 TEST_F(TraceFile, OfARunNestsAndAccountsForAllThreads) {
   for (const std::string executor : {"tbb", "openmp", "serial"}) {
     const std::string out = folder_ / ("out-" + executor);
-    const ProcessResult result =
-        run(out, {"--save", "disparity,views", "--view", "0.5", "--threads", "2", "--executor",
-                  executor, "--trace", trace_, "--report", report_});
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    const json trace = read_report(trace_);
+    succeeds(run(out, {"--save", "disparity,views", "--view", "0.5", "--threads", "2", "--executor",
+                       executor, "--trace", trace_, "--report", report_}));
+    const json trace = read_json(trace_);
     const double wall_us = trace.at("otherData").at("wall_us");
     EXPECT_EQ(trace.at("otherData").at("dropped_spans"), 0);
     const auto slices = checked_slices(trace);
 
-    const json totals = read_report(report_).at("trace");
+    const json totals = read_json(report_).at("trace");
     EXPECT_EQ(totals.at("file"), trace_);
     int pool_threads = 0;
     double pool_us = 0;
@@ -148,9 +137,8 @@ TEST_F(TraceFile, OfARunNestsAndAccountsForAllThreads) {
 TEST_F(TraceFile, ChangesNoResult) {
   const std::string plain = folder_ / "plain";
   const std::string traced = folder_ / "traced";
-  ASSERT_EQ(run(plain, {"--save", "disparity,views", "--view", "0.5"}).exit_code, 0);
-  ASSERT_EQ(
-      run(traced, {"--save", "disparity,views", "--view", "0.5", "--trace", trace_}).exit_code, 0);
+  succeeds(run(plain, {"--save", "disparity,views", "--view", "0.5"}));
+  succeeds(run(traced, {"--save", "disparity,views", "--view", "0.5", "--trace", trace_}));
   EXPECT_TRUE(same_files(results_in(traced), results_in(plain)));
 }
 
@@ -158,16 +146,13 @@ TEST_F(TraceFile, MayNotBeAnotherOutputNorInAMissingFolder) {
   const std::string left = left_ + "/" + frame_file(0);
   const std::string right = right_ + "/" + frame_file(0);
   const std::string map = folder_ / "map.pfm";
-  const ProcessResult twice = run_vantage({"match", left, right, "--disparities", "0:9", "-o", map,
-                                           "--report", report_, "--trace", report_});
-  EXPECT_EQ(twice.exit_code, 2);
-  EXPECT_THAT(twice.err, HasSubstr("--trace"));
-  const ProcessResult missing = run_vantage({"match", left, right, "--disparities", "0:9", "-o",
-                                             map, "--trace", folder_ / "nowhere/trace.json"});
-  EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.err, HasSubstr("nowhere"));
-  EXPECT_FALSE(std::filesystem::exists(map));
+  expect_failure(run_vantage({"match", left, right, "--disparities", "0:9", "-o", map, "--report",
+                              report_, "--trace", report_}),
+                 2, "--trace");
+  expect_failure(run_vantage({"match", left, right, "--disparities", "0:9", "-o", map, "--trace",
+                              folder_ / "nowhere/trace.json"}),
+                 1, "nowhere");
+  EXPECT_FALSE(fs::exists(map));
 }
 
-}  // namespace trace_file_test
-}  // namespace vantage
+}  // namespace vantage::trace_file_test

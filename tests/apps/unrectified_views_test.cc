@@ -1,17 +1,12 @@
 // New views of photographs that are not rectified: colours come from the photographs themselves.
 
-#include <gtest/gtest.h>
-
 #include <array>
-#include <cmath>
 #include <fstream>
-#include <string>
 
 #include "engine/rectification/rectifier.h"
 #include "tests/apps/run_fixture.h"
 
-namespace vantage {
-namespace unrectified_views_test {
+namespace vantage::unrectified_views_test {
 
 /// Cameras of the size of the frames, turned and distorting.
 constexpr const char* kRig = R"(%YAML:1.0
@@ -41,13 +36,11 @@ class UnrectifiedViews : public RunTest {
 
   /// The view that `synth` makes of `images` and maps of disparity 3.
   [[nodiscard]] Photograph synth(const std::array<std::string, 2>& images,
-                                 const std::vector<std::string>& more) const {
+                                 const Words& more) const {
     const std::string out = folder_ / "view.png";
-    const ProcessResult result =
-        run_vantage(joined({"synth", images[0], images[1], "-o", out, "--left-disparity", map_,
-                            "--right-disparity", map_, "--quiet"},
-                           more));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
+    succeeds(run_vantage(joined({"synth", images[0], images[1], "-o", out, "--left-disparity", map_,
+                                 "--right-disparity", map_, "--quiet"},
+                                more)));
     return read_photograph(out);
   }
 
@@ -102,12 +95,12 @@ TEST_F(UnrectifiedViews, AtTheLeftCameraAreTheRectifiedPhotograph) {
 
 TEST_F(UnrectifiedViews, AreSharperThanThoseOfRectifiedFiles) {
   for (const std::string place : {"0.5", "0.5,0.5"}) {
-    const std::vector<std::string> more = {"--view", place};
+    const Words more = {"--view", place};
     const Photograph once = synth(photographs_, joined(more, {"--calibration", rig_}));
     const Photograph twice = synth(rectified_files_, more);
     EXPECT_GT(mean_contrast(once), 1.02 * mean_contrast(twice)) << "at " << place;
     // The book's method moves what has been rectified.
-    const std::vector<std::string> forward = joined(more, {"--warp", "forward"});
+    const Words forward = joined(more, {"--warp", "forward"});
     EXPECT_EQ(largest_difference(synth(photographs_, joined(forward, {"--calibration", rig_})),
                                  synth(rectified_files_, forward)),
               0);
@@ -116,20 +109,17 @@ TEST_F(UnrectifiedViews, AreSharperThanThoseOfRectifiedFiles) {
 
 TEST_F(UnrectifiedViews, OfARunAreThoseOfSynth) {
   for (const std::string place : {"0.5", "0.4,0.3"}) {
-    const std::vector<std::string> more = {"--method", "ssd", "--calibration", rig_,
-                                           "--view",   place, "--quiet"};
+    const Words more = {"--method", "ssd", "--calibration", rig_, "--view", place, "--quiet"};
     const std::string out = folder_ / ("run-" + place);
-    const ProcessResult ran = run(out, joined(more, {"--save", "views", "--frames", "0-1"}));
-    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    succeeds(run(out, joined(more, {"--save", "views", "--frames", "0-1"})));
     FolderContent views = results_in(out);
     ASSERT_EQ(views.size(), 2U);
     for (const int frame : {0, 1}) {
       const std::string file = folder_ / "view.png";
-      const ProcessResult made =
+      succeeds(
           run_vantage(joined({"synth", left_ + "/" + frame_file(frame),
                               right_ + "/" + frame_file(frame), "-o", file, "--disparities=0:9"},
-                             more));
-      ASSERT_EQ(made.exit_code, 0) << made.err;
+                             more)));
       const auto made_by_run = std::next(views.begin(), frame);
       EXPECT_EQ(read_file(file), made_by_run->second) << made_by_run->first << " at " << place;
     }
@@ -139,11 +129,10 @@ TEST_F(UnrectifiedViews, OfARunAreThoseOfSynth) {
 // Frames of a movie share one brightness and one set of maps with their colours.
 TEST_F(UnrectifiedViews, OfAMovieAreThoseOfSingleViews) {
   const std::string pattern = folder_ / "movie%d.png";
-  const ProcessResult movie =
+  const ProcessResult movie = succeeds(
       run_vantage({"synth", photographs_[0], photographs_[1], "-o", pattern, "--left-disparity",
                    map_, "--right-disparity", map_, "--calibration", rig_, "--view", "0.5",
-                   "--view", "0.25,0.5", "--quiet", "--no-intensity-matching"});
-  ASSERT_EQ(movie.exit_code, 0) << movie.err;
+                   "--view", "0.25,0.5", "--quiet", "--no-intensity-matching"}));
   const std::string places[] = {"0.5", "0.25,0.5"};
   for (int view = 0; view < 2; ++view) {
     const Photograph alone = synth(
@@ -154,5 +143,4 @@ TEST_F(UnrectifiedViews, OfAMovieAreThoseOfSingleViews) {
   }
 }
 
-}  // namespace unrectified_views_test
-}  // namespace vantage
+}  // namespace vantage::unrectified_views_test

@@ -5,20 +5,19 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <stdexcept>
 
-#include "tests/temporary_folder.h"
 #include "tests/test_paths.h"
 
 namespace vantage {
 namespace {
 
 /// As exec wants them; ends with null.
-std::vector<char*> pointers(std::vector<std::string>& texts) {
+std::vector<char*> pointers(Words& texts) {
   std::vector<char*> all;
   for (std::string& text : texts) {
     all.push_back(text.data());
@@ -29,8 +28,8 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 
 std::string name_of(const std::string& variable) { return variable.substr(0, variable.find('=')); }
 
-std::vector<std::string> with_changes(char** variables, const std::vector<std::string>& changes) {
-  std::vector<std::string> all = changes;
+Words with_changes(char** variables, const Words& changes) {
+  Words all = changes;
   for (; *variables != nullptr; ++variables) {
     const std::string name = name_of(*variables);
     if (std::ranges::none_of(changes, [&](const auto& other) { return name_of(other) == name; })) {
@@ -42,9 +41,8 @@ std::vector<std::string> with_changes(char** variables, const std::vector<std::s
 
 }  // namespace
 
-VantageProcess::VantageProcess(const std::vector<std::string>& arguments,
-                               const std::filesystem::path& folder,
-                               const std::vector<std::string>& environment)
+VantageProcess::VantageProcess(const Words& arguments, const fs::path& folder,
+                               const Words& environment)
     : out_(folder / "stdout"), err_(folder / "stderr") {
   const std::string binary = test_paths::vantage_binary();
   posix_spawn_file_actions_t actions;
@@ -53,16 +51,16 @@ VantageProcess::VantageProcess(const std::vector<std::string>& arguments,
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out_.c_str(), kFlags, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), kFlags, 0600);
-  std::vector<std::string> texts = {binary};
+  Words texts = {binary};
   texts.insert(texts.end(), arguments.begin(), arguments.end());
-  std::vector<std::string> changes = environment;
+  Words changes = environment;
   if (std::ranges::none_of(changes, [](const std::string& variable) {
         return name_of(variable) == "XDG_CONFIG_HOME";
       })) {
     // What whoever runs the tests has tuned is not to be found.
-    changes.push_back("XDG_CONFIG_HOME=" + (std::filesystem::absolute(folder) / "config").string());
+    changes.push_back("XDG_CONFIG_HOME=" + (fs::absolute(folder) / "config").string());
   }
-  std::vector<std::string> variables = with_changes(environ, changes);
+  Words variables = with_changes(environ, changes);
   const int error = posix_spawn(&pid_, binary.c_str(), &actions, nullptr, pointers(texts).data(),
                                 pointers(variables).data());
   posix_spawn_file_actions_destroy(&actions);
@@ -88,27 +86,70 @@ ProcessResult VantageProcess::wait() const {
           read_file(err_)};
 }
 
-ProcessResult run_vantage(const std::vector<std::string>& arguments,
-                          const std::vector<std::string>& environment) {
+Words words(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+Words joined(Words some, const Words& more) {
+  some.insert(some.end(), more.begin(), more.end());
+  return some;
+}
+
+ProcessResult run_vantage(const Words& arguments, const Words& environment) {
   const TemporaryFolder streams;
   return VantageProcess(arguments, streams.path(), environment).wait();
 }
 
-std::string read_file(const std::filesystem::path& path) {
+ProcessResult succeeds(ProcessResult result, std::source_location where) {
+  if (result.exit_code != 0) {
+    ADD_FAILURE_AT(where.file_name(), static_cast<int>(where.line()))
+        << "exit code " << result.exit_code << ", expected 0: " << result.err;
+  }
+  return result;
+}
+
+testing::AssertionResult is_one_line(const ProcessResult& result, const std::string& command) {
+  const std::string& err = result.err;
+  const std::string begin = command.empty() ? "vantage: " : "vantage " + command + ": ";
+  if (err.rfind(begin, 0) == 0 && err.find('\n') == err.size() - 1) {
+    return testing::AssertionSuccess();
+  }
+  return testing::AssertionFailure()
+         << "stderr is not one line that begins with '" << begin << "': " << err;
+}
+
+void expect_failure(const ProcessResult& result, int exit_code, const std::string& says,
+                    std::source_location where) {
+  const testing::ScopedTrace trace(where.file_name(), static_cast<int>(where.line()), says);
+  EXPECT_EQ(result.exit_code, exit_code) << result.err;
+  EXPECT_THAT(result.err, HasSubstr(says));
+}
+
+void expect_one_line(const ProcessResult& result, int exit_code, const std::string& command,
+                     const std::string& says, std::source_location where) {
+  const testing::ScopedTrace trace(where.file_name(), static_cast<int>(where.line()), says);
+  expect_failure(result, exit_code, says, where);
+  EXPECT_TRUE(is_one_line(result, command));
+}
+
+std::string read_file(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream content;
   content << file.rdbuf();
   return content.str();
 }
 
-void write_file(const std::filesystem::path& path, const std::string& content) {
+nlohmann::json read_json(const fs::path& path) { return nlohmann::json::parse(read_file(path)); }
+
+void write_file(const fs::path& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
-std::vector<std::string> files_below(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  if (std::filesystem::exists(folder)) {
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+Words files_below(const fs::path& folder) {
+  Words names;
+  if (fs::exists(folder)) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
       if (!entry.is_directory()) {
         names.push_back(entry.path().lexically_relative(folder).string());
       }
