@@ -114,9 +114,7 @@ TEST_F(InputResponseCommand, BadInputIsOneLine) {
 }
 
 TEST_F(ResponseCommand, ConstantImagesHaveNoneAndStillWriteTheirData) {
-  Image<std::uint8_t> grey(40, 30);
-  grey.fill(77);
-  write_photograph(folder_ / "grey.png", {std::move(grey)});
+  write_grey(folder_ / "grey.png", 40, 30, 77);
   const ProcessResult result =
       succeeds(run_vantage({"book", "response", folder_ / "grey.png", folder_ / "grey.png", "-o",
                             folder_ / "r.csv", "--plot", folder_ / "r.svg"}));
@@ -124,14 +122,24 @@ TEST_F(ResponseCommand, ConstantImagesHaveNoneAndStillWriteTheirData) {
   EXPECT_EQ(read_xml(read_file(folder_ / "r.svg")).error, "");
 }
 
+/// "MIN:MAX" of a report.
+std::pair<int, int> limits_of(const std::string& range) {
+  std::pair<int, int> limits;
+  EXPECT_EQ(std::sscanf(range.c_str(), "%d:%d", &limits.first, &limits.second), 2) << range;
+  return limits;
+}
+
 /// match, synth and run choose the range themselves.
 class AutomaticDisparities : public PairTest {
  protected:
-  AutomaticDisparities() {
+  static BookPairOptions small_square() {
     BookPairOptions options = book_pair_options("real-square");
     options.width_px = 160;
     options.height_px = 120;
-    pair_ = make_book_pair(options);
+    return options;
+  }
+  AutomaticDisparities() {
+    pair_ = make_book_pair(small_square());
     write_photograph(left_, pair_.left);
     write_photograph(right_, pair_.right);
   }
@@ -145,9 +153,7 @@ TEST_F(AutomaticDisparities, MatchTellsTheRangeAndReportsIt) {
   const std::string range = report["settings"]["disparities"];
   EXPECT_THAT(result.err, HasSubstr("--disparities auto is " + range));
   EXPECT_TRUE(report["seconds"]["stages"].contains("range"));
-  int min = 0;
-  int max = 0;
-  ASSERT_EQ(std::sscanf(range.c_str(), "%d:%d", &min, &max), 2) << range;
+  const auto [min, max] = limits_of(range);
   EXPECT_LE(min, 2);
   EXPECT_GE(max, 6);
   EXPECT_LE(max - min, 20);
@@ -170,9 +176,7 @@ TEST_F(AutomaticDisparities, SynthAndRunTakeItToo) {
 }
 
 TEST_F(AutomaticDisparities, ConstantImagesNeedARange) {
-  Image<std::uint8_t> grey(80, 60);
-  grey.fill(77);
-  write_photograph(folder_ / "grey.png", {std::move(grey)});
+  write_grey(folder_ / "grey.png", 80, 60, 77);
   const std::string grey_file = folder_ / "grey.png";
   for (const Words& command :
        {Words{"match", grey_file, grey_file, "-o", folder_ / "o.pfm"},
@@ -225,9 +229,7 @@ TEST_F(AutomaticDisparities, ExchangedImagesAreToldAndNoPngIsBegun) {
 
 TEST_F(AutomaticDisparities, ARunFindsItInAllOfTheInput) {
   // The second pair is far nearer, the third cannot be read.
-  BookPairOptions near = book_pair_options("real-square");
-  near.width_px = 160;
-  near.height_px = 120;
+  BookPairOptions near = small_square();
   near.background_disparity_px = 30;
   near.front_disparity_px = 36;
   const BookPair second = make_book_pair(near);
@@ -244,13 +246,10 @@ TEST_F(AutomaticDisparities, ARunFindsItInAllOfTheInput) {
                      "--shard", std::to_string(part + 1) + "/2", "--threads",
                      std::to_string(part + 1), "-o", folder_ / "run"});
     EXPECT_EQ(result.exit_code, 3) << result.err;
-    ranges[part] = nlohmann::json::parse(
-        read_file(folder_ / "run/.vantage/run.json"))["settings"]["disparities"];
+    ranges[part] = read_json(folder_ / "run/.vantage/run.json")["settings"]["disparities"];
   }
   EXPECT_EQ(ranges[0], ranges[1]);
-  int min = 0;
-  int max = 0;
-  ASSERT_EQ(std::sscanf(ranges[0].c_str(), "%d:%d", &min, &max), 2) << ranges[0];
+  const auto [min, max] = limits_of(ranges[0]);
   EXPECT_LE(min, 2);
   EXPECT_GE(max, 36);
 }
@@ -264,17 +263,12 @@ TEST_F(AutomaticDisparities, AResumedRunTakesTheRangeThatItBeganWith) {
   const Words command = {"run", "--pairs", folder_ / "pairs.csv", "-o", folder_ / "run"};
   succeeds(run_vantage(command));
   // Nothing is read to find it: these images, which look unchanged, have none.
-  Image<std::uint8_t> grey(160, 120);
-  grey.fill(99);
-  const Photograph flat{std::move(grey)};
   for (const std::string& file : {left, right}) {
     const auto time = fs::last_write_time(file);
-    write_photograph(file, flat);
+    write_grey(file, 160, 120, 99);
     fs::last_write_time(file, time);
   }
-  Words again = command;
-  again.push_back("--resume");
-  const ProcessResult resumed = succeeds(run_vantage(again));
+  const ProcessResult resumed = succeeds(run_vantage(joined(command, {"--resume"})));
   EXPECT_THAT(resumed.err, HasSubstr("run: --disparities auto is 0:"));
 }
 

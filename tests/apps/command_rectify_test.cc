@@ -27,7 +27,6 @@ class RectifyTest : public testing::Test {
   [[nodiscard]] static ProcessResult rectify(const Words& more) {
     return run_vantage(joined({"rectify"}, more));
   }
-  [[nodiscard]] static nlohmann::json json_of(const std::string& path) { return read_json(path); }
 
   Execution execution_{{.threads = 2}};
   TemporaryFolder folder_;
@@ -47,7 +46,7 @@ TEST_F(RectifyTest, FromTheImagesAlone) {
   EXPECT_THAT(result.err, HasSubstr("rows are off by"));
   EXPECT_THAT(result.err, HasSubstr("disparities "));
 
-  const auto results = json_of(report)["results"];
+  const auto results = read_json(report)["results"];
   EXPECT_EQ(results["pairs"], 1);
   EXPECT_GE(results["matches"].get<int>(), results["inliers"].get<int>());
   EXPECT_GE(results["inliers"].get<int>(), 60);
@@ -133,7 +132,7 @@ TEST_F(RectifyTest, BaselineGivesTheScale) {
   const std::string report = folder_ / "report.json";
   const ProcessResult without = rectify({left_, right_, "--matrices", rig, "--report", report});
   EXPECT_THAT(without.err, HasSubstr("the cameras have no scale"));
-  EXPECT_TRUE(json_of(report)["results"]["baseline_m"].is_null());
+  EXPECT_TRUE(read_json(report)["results"]["baseline_m"].is_null());
   EXPECT_FALSE(read_stereo_calibration(rig).has_scale);
   const Words match = {
       "match",         left_, right_,     "-o", folder_ / "map.pfm", "--depth", folder_ / "z.npy",
@@ -145,7 +144,7 @@ TEST_F(RectifyTest, BaselineGivesTheScale) {
   const ProcessResult with = succeeds(rectify({left_, right_, "--matrices", rig, "--report", report,
                                                "--baseline", "0.25", "-o", folder_ / "out"}));
   EXPECT_THAT(with.err, HasSubstr("baseline 0.25 m"));
-  EXPECT_DOUBLE_EQ(json_of(report)["results"]["baseline_m"].get<double>(), 0.25);
+  EXPECT_DOUBLE_EQ(read_json(report)["results"]["baseline_m"].get<double>(), 0.25);
   EXPECT_NEAR(read_stereo_calibration(rig).baseline(), 0.25, 1e-12);
   EXPECT_EQ(read_stereo_calibration(rig).metres_per_unit, 1);
   // Photographs that `match` rectifies itself, and those that `rectify` did.
@@ -168,9 +167,9 @@ TEST_F(RectifyTest, ExchangedImagesAreWarnedOf) {
   };
   const std::string rig = folder_ / "rig.yml";
   EXPECT_FALSE(warned({"rectify", left_, right_, "-o", folder_ / "pair", "--matrices", rig}));
-  EXPECT_FALSE(json_of(report)["results"]["looks_exchanged"].get<bool>());
+  EXPECT_FALSE(read_json(report)["results"]["looks_exchanged"].get<bool>());
   EXPECT_TRUE(warned({"rectify", right_, left_, "--matrices", folder_ / "other.yml"}));
-  EXPECT_TRUE(json_of(report)["results"]["looks_exchanged"].get<bool>());
+  EXPECT_TRUE(read_json(report)["results"]["looks_exchanged"].get<bool>());
   EXPECT_TRUE(warned({"rectify", right_, left_, "-o", folder_ / "wrong", "--calibration", rig}));
 
   const std::string left = folder_ / "pair/raw-left.png";
@@ -178,7 +177,7 @@ TEST_F(RectifyTest, ExchangedImagesAreWarnedOf) {
   const std::string map = folder_ / "map.pfm";
   EXPECT_FALSE(warned({"match", left, right, "-o", map, "--disparities=0:30", "--method", "ssd"}));
   EXPECT_TRUE(warned({"match", right, left, "-o", map, "--disparities=0:30", "--method", "ssd"}));
-  const auto found = json_of(report)["results"]["rectification"];
+  const auto found = read_json(report)["results"]["rectification"];
   EXPECT_TRUE(found["looks_exchanged"].get<bool>());
   EXPECT_GT(found["negative_disparity_share"].get<double>(), 0.9);
   EXPECT_FALSE(warned({"match", right, left, "-o", map, "--disparities=-30:0", "--method", "ssd"}))
@@ -211,18 +210,14 @@ TEST_F(RectifyTest, ErrorsAreOneLine) {
   expect_error({left_, right_, "--matrices", folder_ / "a.txt"}, 2, "--matrices is");
   expect_error({folder_ / "none.png", right_, "-o", out}, 1, "none.png");
 
-  Image<std::uint8_t> flat(320, 240);
-  flat.fill(90);
   const std::string flat_file = folder_ / "flat.png";
-  write_photograph(flat_file, {std::move(flat)});
+  write_grey(flat_file, 320, 240, 90);
   expect_error({flat_file, right_, "-o", out}, 1,
                "the images have 0 points in common, expected at least 20");
   EXPECT_FALSE(fs::exists(out)) << "nothing is left behind";
 
-  Image<std::uint8_t> small(100, 80);
-  small.fill(90);
   const std::string small_file = folder_ / "small.png";
-  write_photograph(small_file, {std::move(small)});
+  write_grey(small_file, 100, 80, 90);
   expect_error({left_, small_file, "-o", out}, 1, "expected equal sizes");
 
   // The same photograph from a camera that only turned.
@@ -257,15 +252,15 @@ TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {
   EXPECT_THAT(warned.err,
               AllOf(HasSubstr("match: warning: the pair is not rectified: rows are off by"),
                     HasSubstr("% more of the pixels wrong")));
-  const auto found = json_of(report)["results"]["rectification"];
+  const auto found = read_json(report)["results"]["rectification"];
   EXPECT_FALSE(found["is_rectified"].get<bool>());
   EXPECT_GT(found["systematic_px"].get<double>(), 5);
   const std::string with_check = read_file(map);
 
   const ProcessResult unchecked = match({"--no-rectification-check"});
   EXPECT_THAT(unchecked.err, Not(HasSubstr("not rectified")));
-  EXPECT_FALSE(json_of(report).contains("results") &&
-               json_of(report)["results"].contains("rectification"));
+  EXPECT_FALSE(read_json(report).contains("results") &&
+               read_json(report)["results"].contains("rectification"));
   EXPECT_EQ(read_file(map), with_check);
   EXPECT_THAT(match({"--quiet"}).err, Not(HasSubstr("warning")));
 
@@ -273,26 +268,17 @@ TEST_F(RectifyTest, OtherCommandsWarnOfPairsThatAreNotRectified) {
       run_vantage({"synth", left_, right_, "--view", "0.5", "-o", folder_ / "view.png",
                    "--disparities=0:20", "--method", "ssd", "--report", report});
   EXPECT_THAT(synth.err, HasSubstr("synth: warning: the pair is not rectified"));
-  EXPECT_TRUE(json_of(report)["results"].contains("rectification"));
-  EXPECT_TRUE(json_of(report)["results"].contains("views"));
+  EXPECT_TRUE(read_json(report)["results"].contains("rectification"));
+  EXPECT_TRUE(read_json(report)["results"].contains("views"));
 
   const std::string rig = folder_ / "rig.yml";
   succeeds(rectify({left_, right_, "--matrices", rig}));
   for (const bool calibrated : {false, true}) {
-    Words arguments = {"run",
-                       "--left",
-                       left_,
-                       "--right",
-                       right_,
-                       "-o",
-                       folder_ / (calibrated ? "run-c" : "run"),
-                       "--disparities=0:20",
-                       "--method",
-                       "ssd"};
-    if (calibrated) {
-      arguments.insert(arguments.end(), {"--calibration", rig});
-    }
-    const ProcessResult run = succeeds(run_vantage(arguments));
+    const Words calibration = calibrated ? Words{"--calibration", rig} : Words{};
+    const ProcessResult run = succeeds(run_vantage(
+        joined({"run", "--left", left_, "--right", right_, "-o",
+                folder_ / (calibrated ? "run-c" : "run"), "--disparities=0:20", "--method", "ssd"},
+               calibration)));
     EXPECT_EQ(run.err.find("warning: the pair is not rectified") == std::string::npos, calibrated)
         << run.err;
   }
@@ -306,7 +292,7 @@ TEST_F(RectifyTest, RectifiedPairsAreNotWarnedOf) {
   const ProcessResult result = run_vantage({"match", left_, right_, "-o", folder_ / "map.pfm",
                                             "--disparities=0:20", "--report", report});
   EXPECT_THAT(result.err, Not(HasSubstr("warning")));
-  EXPECT_TRUE(json_of(report)["results"]["rectification"]["is_rectified"].get<bool>());
+  EXPECT_TRUE(read_json(report)["results"]["rectification"]["is_rectified"].get<bool>());
 }
 
 TEST(RectifyChessboard, FromFeaturesOfAllPairs) {
@@ -317,17 +303,11 @@ TEST(RectifyChessboard, FromFeaturesOfAllPairs) {
   const TemporaryFolder out;
   for (const bool calibrated : {false, true}) {
     const std::string report = out / "report.json";
-    Words arguments = {"rectify",
-                       (folder / "left0[1-4].jpg").string(),
-                       (folder / "right0[1-4].jpg").string(),
-                       "--matrices",
-                       out / "rig.yml",
-                       "--report",
-                       report};
-    if (calibrated) {
-      arguments.insert(arguments.end(), {"--calibration", folder / "stereo_reference.yml"});
-    }
-    succeeds(run_vantage(arguments));
+    const Words calibration =
+        calibrated ? Words{"--calibration", folder / "stereo_reference.yml"} : Words{};
+    succeeds(run_vantage(joined({"rectify", folder / "left0[1-4].jpg", folder / "right0[1-4].jpg",
+                                 "--matrices", out / "rig.yml", "--report", report},
+                                calibration)));
     const auto error = read_json(report)["results"]["vertical_error"];
     EXPECT_LT(error["rms_px"].get<double>(), 0.5);
     EXPECT_GT(error["inliers"].get<int>(), 300);

@@ -9,8 +9,6 @@
 
 namespace vantage::command_run_test {
 
-constexpr int kFrames = 6;
-
 /// Names of the files a run made, without those of its journal.
 Words made_in(const std::string& folder) {
   Words names;
@@ -26,24 +24,8 @@ std::string last_line(const ProcessResult& result) {
   return text.substr(text.rfind('\n') + 1);
 }
 
-class RunCommand : public testing::Test {
+class RunCommand : public DotFramesTest {
  protected:
-  RunCommand() {
-    fs::create_directories(left_);
-    fs::create_directories(right_);
-    for (int frame = 0; frame < kFrames; ++frame) {
-      BookPairOptions options;
-      options.width_px = 47;
-      options.height_px = 29;
-      options.seed = static_cast<std::uint64_t>(frame + 1);
-      const BookPair pair = make_book_pair(options);
-      write_photograph(left_ + name(frame), pair.left);
-      write_photograph(right_ + name(frame), pair.right);
-    }
-  }
-
-  static std::string name(int frame) { return "/frame" + std::to_string(frame) + ".png"; }
-
   [[nodiscard]] Words arguments(const std::string& out, const Words& more = {}) const {
     return joined({"run", "--left", left_, "--right", right_, "-o", out, "--disparities=0:9"},
                   more);
@@ -51,10 +33,6 @@ class RunCommand : public testing::Test {
   [[nodiscard]] ProcessResult run(const std::string& out, const Words& more = {}) const {
     return run_vantage(arguments(out, more));
   }
-
-  TemporaryFolder folder_;
-  std::string left_ = folder_ / "left";
-  std::string right_ = folder_ / "right";
 };
 
 TEST_F(RunCommand, EveryFrameEqualsTheSingleCommands) {

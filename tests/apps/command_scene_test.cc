@@ -7,7 +7,7 @@
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/io/video/video_io.h"
-#include "tests/apps/pair_fixture.h"
+#include "tests/apps/sampling.h"
 #include "tests/engine/unrectified_pair.h"
 
 namespace vantage::command_scene_test {
@@ -47,7 +47,6 @@ class SceneCommand : public testing::Test {
   [[nodiscard]] ProcessResult view(const Words& more) const {
     return run_vantage(joined({"scene", "view", place_}, more));
   }
-  static nlohmann::json json_in(const std::string& file) { return read_json(file); }
 
   mutable Execution execution_{{.threads = 2}};
   LayeredScene scene_{small_scene(), execution_};
@@ -59,7 +58,7 @@ class SceneCommand : public testing::Test {
 TEST_F(SceneCommand, BuildsAGridAndRendersViewsOfIt) {
   const ProcessResult built = succeeds(build_grid({"--report", folder_ / "build.json"}));
   EXPECT_THAT(built.err, HasSubstr("6 images, 7 edges, 7 of them matched now"));
-  const nlohmann::json build_report = json_in(folder_ / "build.json");
+  const nlohmann::json build_report = read_json(folder_ / "build.json");
   EXPECT_EQ(build_report.at("results").at("triangles"), 4);
   EXPECT_EQ(build_report.at("results").at("edges_matched").size(), 7U);
   EXPECT_GT(build_report.at("cells"), 0);
@@ -72,7 +71,7 @@ TEST_F(SceneCommand, BuildsAGridAndRendersViewsOfIt) {
   EXPECT_GE(psnr(folder_ / "v0.png", 0.3, 0.2), 29);
   EXPECT_GE(psnr(folder_ / "v1.png", 0.75, 0), 29);
   EXPECT_TRUE(fs::exists(folder_ / "h1.png"));
-  const nlohmann::json views = json_in(folder_ / "view.json").at("results").at("views");
+  const nlohmann::json views = read_json(folder_ / "view.json").at("results").at("views");
   ASSERT_EQ(views.size(), 2U);
   EXPECT_EQ(views[0].at("from").size(), 3U);
   EXPECT_EQ(views[0].at("x"), 0.3);
@@ -148,7 +147,7 @@ TEST_F(SceneCommand, RendersPathsAndTwoEyes) {
     }
   }
   const nlohmann::json described =
-      json_in(folder_ / "eyes.json").at("results").at("views").at(0).at("eyes");
+      read_json(folder_ / "eyes.json").at("results").at("views").at(0).at("eyes");
   EXPECT_EQ(described.at(0).at("x"), 0.4);
   EXPECT_EQ(described.at(1).at("x"), 0.6);
 }
@@ -246,7 +245,7 @@ TEST_F(SceneCommand, WarnsOfEdgesThatDoNotCorrespond) {
   const ProcessResult built = succeeds(build_with({"--report", folder_ / "report.json"}));
   EXPECT_THAT(built.err, AllOf(HasSubstr("warning: edge 2-3 (2.png, 3.png): rows are off by"),
                                Not(HasSubstr("edge 0-1")), Not(HasSubstr("exchanged"))));
-  const nlohmann::json edges = json_in(folder_ / "report.json").at("results").at("edges_matched");
+  const nlohmann::json edges = read_json(folder_ / "report.json").at("results").at("edges_matched");
   EXPECT_EQ(edges.at(0).at("rectification").at("is_rectified"), true);
   EXPECT_EQ(edges.at(3).at("rectification").at("is_rectified"), false);
   EXPECT_THAT(build_with({"--no-rectification-check"}).err, Not(HasSubstr("warning")));
@@ -306,56 +305,48 @@ TEST_F(SceneCommand, CamerasNeedNoRowsOrColumns) {
 }
 
 TEST_F(InputSceneCommand, RefusesWrongUsage) {
-  const auto refused = [&](const ProcessResult& result, int exit_code, const std::string& command,
-                           const std::string& text) {
-    expect_one_line(result, exit_code, command, text);
-  };
-  refused(build({}), 2, "scene build", "expected --images or --positions");
-  refused(build({"--images", images_, "--positions", "p.csv"}), 2, "scene build", "both given");
-  refused(build({"--positions", "p.csv", "--grid", "2x3"}), 2, "scene build",
-          "--grid has no effect with --positions");
-  refused(build({"--images", images_, "--grid", "2"}), 2, "scene build", "COLUMNSxROWS");
-  refused(build({"--images", images_, "--spacing", "0,1"}), 2, "scene build", "above 0");
-  refused(build({"--images", images_, "--grid", "2x2"}), 1, "scene build",
-          "6 images, expected 4 for a grid of 2x2");
-  refused(build({"--images", folder_ / "nothing"}), 1, "scene build", "nothing");
-  refused(build({"--images", images_, "--disparities-y=-1:1"}), 2, "scene build",
-          "disparities-y is set");
-  write_file(folder_ / "list.csv", "images/0.png,0,0\n");
-  refused(build({"--positions", folder_ / "list.csv"}), 1, "scene build",
-          "scene has 1 images, expected 2 to 4096");
-  write_file(folder_ / "list.csv", "images/0.png,0,0\nimages/1.png,0,0\n");
-  refused(build({"--positions", folder_ / "list.csv"}), 1, "scene build",
-          "1.png at 0,0 has the same position as");
-  refused(view({"--at", "0,0", "-o", folder_ / "v.png"}), 1, "scene view", "no scene");
-  refused(run_vantage({"scene", "info", place_}), 1, "scene info", "no scene");
+  write_file(folder_ / "alone.csv", "images/0.png,0,0\n");
+  write_file(folder_ / "twice.csv", "images/0.png,0,0\nimages/1.png,0,0\n");
+  const std::vector<Refusal> of_build = {
+      {{}, "expected --images or --positions"},
+      {{"--images", images_, "--positions", "p.csv"}, "both given"},
+      {{"--positions", "p.csv", "--grid", "2x3"}, "--grid has no effect with --positions"},
+      {{"--images", images_, "--grid", "2"}, "COLUMNSxROWS"},
+      {{"--images", images_, "--spacing", "0,1"}, "above 0"},
+      {{"--images", images_, "--grid", "2x2"}, "6 images, expected 4 for a grid of 2x2", 1},
+      {{"--images", folder_ / "nothing"}, "nothing", 1},
+      {{"--images", images_, "--disparities-y=-1:1"}, "disparities-y is set"},
+      {{"--positions", folder_ / "alone.csv"}, "scene has 1 images, expected 2 to 4096", 1},
+      {{"--positions", folder_ / "twice.csv"}, "1.png at 0,0 has the same position as", 1}};
+  expect_refusals("scene build", folder_.path(), of_build,
+                  [&](const Words& more) { return build(more); });
+  const std::string out = folder_ / "v.png";
+  expect_one_line(view({"--at", "0,0", "-o", out}), 1, "scene view", "no scene");
+  expect_one_line(run_vantage({"scene", "info", place_}), 1, "scene info", "no scene");
   EXPECT_EQ(run_vantage({"scene"}).exit_code, 2);
 
   succeeds(build({"--images", images_ + "/[01].png"}));
-  refused(view({"-o", folder_ / "v.png"}), 2, "scene view",
-          "expected one of --at, --sweep and --path");
-  refused(view({"--at", "0", "-o", folder_ / "v.png"}), 2, "scene view", "a position X,Y");
-  refused(view({"--at", "40,0", "-o", folder_ / "v.png"}), 2, "scene view", "at most 16");
-  refused(view({"--sweep", "0,0:1,0:1", "-o", folder_ / "v.mp4"}), 2, "scene view", "VIEWS with 2");
-  refused(view({"--at", "0,0", "--at", "1,0", "-o", folder_ / "v.png"}), 2, "scene view",
-          "expected a pattern");
-  refused(view({"--at", "0,0", "-o", images_ + "/0.png"}), 2, "scene view", "also an input");
-  refused(
-      view({"--sweep", "0,0:90,0:4", "-o", folder_ / "v%d.png"}), 2, "scene view",
-      "view at 30,0 is 29 lengths of the nearest edge away from its images, expected at most 16");
-  EXPECT_FALSE(fs::exists(folder_ / "v0.png"));
-  refused(view({"--at", "0,0", "--sweep", "0,0:1,0:4", "-o", folder_ / "v.mp4"}), 2, "scene view",
-          "expected one of --at, --sweep and --path");
-  refused(view({"--at", "0,0", "--eye-separation", "2", "-o", folder_ / "v.png"}), 2, "scene view",
-          "no effect without --stereo-packing");
-  refused(view({"--at", "0,0", "--stereo-packing", "sbsl", "--hole-mask", folder_ / "h.png", "-o",
-                folder_ / "v.png"}),
-          2, "scene view", "--hole-mask is the mask of one view");
   write_file(folder_ / "cameras.toml",
              "[[view]]\nframe = 0\nK = [9,0,5, 0,9,5, 0,0,1]\nR = [1,0,0, 0,1,0, 0,0,1]\n"
              "t = [0,0,0]\n");
-  refused(view({"--path", folder_ / "cameras.toml", "-o", folder_ / "v.mp4"}), 2, "scene view",
-          "expected positions at = [X, Y] among the images");
+  const std::vector<Refusal> of_view = {
+      {{"-o", out}, "expected one of --at, --sweep and --path"},
+      {{"--at", "0", "-o", out}, "a position X,Y"},
+      {{"--at", "40,0", "-o", out}, "at most 16"},
+      {{"--sweep", "0,0:1,0:1", "-o", folder_ / "v.mp4"}, "VIEWS with 2"},
+      {{"--at", "0,0", "--at", "1,0", "-o", out}, "expected a pattern"},
+      {{"--at", "0,0", "-o", images_ + "/0.png"}, "also an input"},
+      {{"--sweep", "0,0:90,0:4", "-o", folder_ / "v%d.png"},
+       "view at 30,0 is 29 lengths of the nearest edge away from its images, expected at most 16"},
+      {{"--at", "0,0", "--sweep", "0,0:1,0:4", "-o", folder_ / "v.mp4"},
+       "expected one of --at, --sweep and --path"},
+      {{"--at", "0,0", "--eye-separation", "2", "-o", out}, "no effect without --stereo-packing"},
+      {{"--at", "0,0", "--stereo-packing", "sbsl", "--hole-mask", folder_ / "h.png", "-o", out},
+       "--hole-mask is the mask of one view"},
+      {{"--path", folder_ / "cameras.toml", "-o", folder_ / "v.mp4"},
+       "expected positions at = [X, Y] among the images"}};
+  expect_refusals("scene view", folder_.path(), of_view,
+                  [&](const Words& more) { return view(more); });
 }
 
 }  // namespace vantage::command_scene_test

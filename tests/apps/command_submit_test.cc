@@ -6,8 +6,6 @@
 
 namespace vantage::command_submit_test {
 
-constexpr int kFrames = 6;
-
 /// Exit code of a shell command; its output goes to `log`.
 int shell(const std::string& command, const std::string& log) {
   const std::string line = "{ " + command + "\n} >>'" + log + "' 2>&1";
@@ -16,21 +14,9 @@ int shell(const std::string& command, const std::string& log) {
 }
 
 /// Puts programs of a test's own in front of those of the system.
-class SubmitCommand : public testing::Test {
+class SubmitCommand : public DotFramesTest {
  protected:
   SubmitCommand() {
-    for (int frame = 0; frame < kFrames; ++frame) {
-      BookPairOptions options;
-      options.width_px = 47;
-      options.height_px = 29;
-      options.seed = static_cast<std::uint64_t>(frame + 1);
-      const BookPair pair = make_book_pair(options);
-      const std::string name = "/frame" + std::to_string(frame) + ".png";
-      fs::create_directories(left_);
-      fs::create_directories(right_);
-      write_photograph(left_ + name, pair.left);
-      write_photograph(right_ + name, pair.right);
-    }
     fs::create_directory(programs_);
     ::setenv("PATH", (programs_ + ":" + path_).c_str(), 1);
     add_program("sbatch", "echo 4$(wc -l <" + calls_ + ")");
@@ -85,9 +71,6 @@ class SubmitCommand : public testing::Test {
            " ] && break; sleep 0.02; done; kill -" + signal + " $task";
   }
 
-  TemporaryFolder folder_;
-  std::string left_ = folder_ / "left";
-  std::string right_ = folder_ / "right";
   std::string programs_ = folder_ / "programs";
   std::string calls_ = folder_ / "calls";
   std::string path_ = std::getenv("PATH");

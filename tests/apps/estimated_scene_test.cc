@@ -1,23 +1,10 @@
 // Hand-held photographs without poses: `scene poses`, and what `scene build` makes of its model.
-#include <fmt/format.h>
 
-#include <Eigen/Dense>
-#include <Eigen/Geometry>
-#include <numbers>
 #include <sstream>
 
-#include "engine/evaluation/view_evaluation.h"
-#include "engine/generation/layered_scene.h"
-#include "engine/io/images/photograph_io.h"
-#include "tests/apps/vantage_process.h"
+#include "tests/apps/posed_cameras.h"
 
 namespace vantage::estimated_scene_test {
-
-Eigen::Matrix3d turned(double x, double y, double z) {
-  constexpr double kDegree = std::numbers::pi / 180;
-  const Eigen::Vector3d radians = Eigen::Vector3d(x, y, z) * kDegree;
-  return Eigen::AngleAxisd(radians.norm(), radians.normalized()).toRotationMatrix();
-}
 
 struct ModelImage {
   Eigen::Matrix3d rotation;
@@ -59,46 +46,15 @@ std::map<std::string, ModelImage> model_images(const std::string& folder) {
   return images;
 }
 
-class EstimatedScene : public testing::Test {
+class EstimatedScene : public PosedCameras {
  protected:
-  static LayeredSceneOptions small_scene() {
-    LayeredSceneOptions options;
-    options.width_px = 240;
-    options.height_px = 180;
-    options.samples_per_side = 2;
-    return options;
-  }
-
-  EstimatedScene() {
-    fs::create_directory(images_);
-    add({0, 0, 0.05}, turned(0.5, -0.8, 2));
-    add({1, 0.1, 0}, turned(-0.4, 0.6, -3));
-    add({0.1, 0.9, -0.1}, turned(0.7, 0.3, 1));
-    add({0.9, 1, 0.1}, turned(-0.6, -0.5, 4));
-    const Eigen::Matrix3d& k = cameras_[0].matrix;
-    write_file(lens_, fmt::format("{} {} {} {}\n", k(0, 0), k(1, 1), k(0, 2), k(1, 2)));
-  }
-
-  void add(const Eigen::Vector3d& centre, const Eigen::Matrix3d& rotation) {
-    PosedCamera made = scene_.camera({});
-    made.rotation = rotation;
-    made.translation = -rotation * centre;
-    write_photograph(fmt::format("{}/{}.png", images_, cameras_.size()),
-                     scene_.render(made, 0).image);
-    cameras_.push_back(made);
-  }
+  EstimatedScene() : PosedCameras(240, 180) { write_lens(lens_); }
 
   [[nodiscard]] ProcessResult poses(const Words& more) const {
     return run_vantage(joined({"scene", "poses", "--images", images_, "-o", model_}, more));
   }
 
-  Execution execution_{{.threads = 2}};
-  LayeredScene scene_{small_scene(), execution_};
-  TemporaryFolder folder_;
-  std::string images_ = folder_ / "images";
-  std::string model_ = folder_ / "model";
   std::string lens_ = folder_ / "lens.txt";
-  std::vector<PosedCamera> cameras_;
 };
 
 TEST_F(EstimatedScene, PosesLeadToViewsAndClouds) {
@@ -143,33 +99,19 @@ TEST_F(EstimatedScene, PosesLeadToViewsAndClouds) {
   EXPECT_EQ(results.at("sightings"), sightings);
   EXPECT_LE(results.at("median_px"), results.at("median_px_before_adjustment"));
 
-  const std::string place = folder_ / "scene";
-  succeeds(run_vantage({"scene", "build", "--poses", model_, "--images", images_, "-o", place,
+  succeeds(run_vantage({"scene", "build", "--poses", model_, "--images", images_, "-o", place_,
                         "--preset", "fast", "--disparities=0:20"}));
-  PosedCamera wanted = scene_.camera({});
-  wanted.rotation = turned(0.2, 0.3, 1);
-  wanted.translation = -wanted.rotation * Eigen::Vector3d(0.5, 0.5, 0.05);
+  const Eigen::Vector3d middle(0.5, 0.5, 0.05);
+  const PosedCamera wanted = camera(middle, turn(0.2, 0.3, 1));
   const Eigen::Matrix3d r = wanted.rotation * first_turn.transpose();
-  const Eigen::Vector3d t =
-      -r * (first_turn * (Eigen::Vector3d(0.5, 0.5, 0.05) - cameras_[0].centre()));
-  const Eigen::Matrix3d& k = wanted.matrix;
-  const nlohmann::json view = {
-      {"view",
-       {{{"K", {k(0, 0), 0, k(0, 2), 0, k(1, 1), k(1, 2), 0, 0, 1}},
-         {"R", {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
-         {"t", {t.x(), t.y(), t.z()}}}}}};
-  write_file(folder_ / "pose.json", view.dump());
-  succeeds(run_vantage(
-      {"scene", "view", place, "--pose", folder_ / "pose.json", "-o", folder_ / "view.png"}));
-  EXPECT_GT(evaluate_view(read_photograph(folder_ / "view.png"), scene_.render(wanted, 0).image,
-                          execution_)
-                .psnr_db,
-            22);
-  succeeds(run_vantage({"scene", "cloud", place, "-o", folder_ / "cloud.ply"}));
+  write_pose(r, -r * (first_turn * (middle - cameras_[0].centre())));
+  succeeds(run_vantage({"scene", "view", place_, "--pose", pose_, "-o", folder_ / "view.png"}));
+  EXPECT_GT(psnr(folder_ / "view.png", wanted), 22);
+  succeeds(run_vantage({"scene", "cloud", place_, "-o", folder_ / "cloud.ply"}));
 }
 
 TEST_F(EstimatedScene, ImagesThatDoNotBelongAreNamed) {
-  LayeredSceneOptions other = small_scene();
+  LayeredSceneOptions other = small_scene(240, 180);
   other.seed = 9;
   other.has_boards = true;
   write_photograph(images_ + "/4.png",
@@ -194,8 +136,7 @@ TEST_F(EstimatedScene, WrongInputIsRefused) {
   write_file(lens_, "OPENCV");
   EXPECT_THAT(problem({"--intrinsics", lens_}), HasSubstr("lens.txt"));
   write_file(lens_, "");
-  LayeredSceneOptions other = small_scene();
-  other.width_px = 200;
+  const LayeredSceneOptions other = small_scene(200, 180);
   write_photograph(images_ + "/9.png",
                    LayeredScene(other, execution_).render(SceneView{}, 0).image);
   EXPECT_THAT(problem({}), HasSubstr("9.png is 200x180, expected 240x180 as"));

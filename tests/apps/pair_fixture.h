@@ -7,6 +7,13 @@
 
 namespace vantage {
 
+/// A picture of one grey level.
+inline void write_grey(const fs::path& path, int width, int height, std::uint8_t level) {
+  Image<std::uint8_t> grey(width, height);
+  grey.fill(level);
+  write_photograph(path.string(), {std::move(grey)});
+}
+
 /// A random-dot square of known disparity as left.png and right.png in a folder of its own.
 class PairTest : public testing::Test {
  protected:
@@ -44,6 +51,32 @@ class PairTest : public testing::Test {
   BookPair pair_;
   std::string left_ = folder_ / "left.png";
   std::string right_ = folder_ / "right.png";
+};
+
+/// Six random-dot squares of 47x29 pixels as left/frame0.png … and right/frame0.png … in a folder
+/// of its own.
+class DotFramesTest : public testing::Test {
+ protected:
+  static constexpr int kFrames = 6;
+
+  DotFramesTest() {
+    fs::create_directories(left_);
+    fs::create_directories(right_);
+    for (int frame = 0; frame < kFrames; ++frame) {
+      BookPairOptions options;
+      options.width_px = 47;
+      options.height_px = 29;
+      options.seed = static_cast<std::uint64_t>(frame + 1);
+      const BookPair pair = make_book_pair(options);
+      write_photograph(left_ + name(frame), pair.left);
+      write_photograph(right_ + name(frame), pair.right);
+    }
+  }
+  static std::string name(int frame) { return "/frame" + std::to_string(frame) + ".png"; }
+
+  TemporaryFolder folder_;
+  std::string left_ = folder_ / "left";
+  std::string right_ = folder_ / "right";
 };
 
 }  // namespace vantage

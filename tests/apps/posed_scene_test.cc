@@ -1,61 +1,14 @@
 
-#include <fmt/format.h>
-
-#include <Eigen/Dense>
-#include <Eigen/Geometry>
 #include <cstring>
-#include <numbers>
 
-#include "engine/evaluation/view_evaluation.h"
-#include "engine/generation/layered_scene.h"
-#include "engine/io/images/photograph_io.h"
-#include "tests/apps/vantage_process.h"
+#include "tests/apps/posed_cameras.h"
 
 namespace vantage::posed_scene_test {
 
-/// Four hand-held cameras about a square, turned by some degrees, with their poses as a COLMAP
-/// model in DIR/model; a fifth one between them for the truth.
-class PosedScene : public testing::Test {
+/// The cameras with their poses as a COLMAP model in DIR/model.
+class PosedScene : public PosedCameras {
  protected:
-  static LayeredSceneOptions small_scene() {
-    LayeredSceneOptions options;
-    options.width_px = 160;
-    options.height_px = 120;
-    options.samples_per_side = 2;
-    return options;
-  }
-  static Eigen::Matrix3d turn(double x, double y, double z) {
-    constexpr double kDegree = std::numbers::pi / 180;
-    const Eigen::Vector3d radians = Eigen::Vector3d(x, y, z) * kDegree;
-    return Eigen::AngleAxisd(radians.norm(), radians.normalized()).toRotationMatrix();
-  }
-
-  PosedScene() {
-    fs::create_directory(images_);
-    add({0, 0, 0.05}, turn(0.5, -0.8, 2));
-    add({1, 0.1, 0}, turn(-0.4, 0.6, -3));
-    add({0.1, 0.9, -0.1}, turn(0.7, 0.3, 1));
-    add({0.9, 1, 0.1}, turn(-0.6, -0.5, 4));
-    for (std::size_t i = 0; i < cameras_.size(); ++i) {
-      write_photograph(fmt::format("{}/{}.png", images_, i), truth(cameras_[i]));
-    }
-    write_model(model_, {0, 0, 0, 0});
-  }
-
-  void add(const Eigen::Vector3d& centre, const Eigen::Matrix3d& rotation) {
-    cameras_.push_back(camera(centre, rotation));
-  }
-  [[nodiscard]] PosedCamera camera(const Eigen::Vector3d& centre,
-                                   const Eigen::Matrix3d& rotation) const {
-    PosedCamera made = scene_.camera({});
-    made.rotation = rotation;
-    made.translation = -rotation * centre;
-    return made;
-  }
-  [[nodiscard]] Photograph truth(const PosedCamera& at) const { return scene_.render(at, 0).image; }
-  [[nodiscard]] double psnr(const std::string& file, const PosedCamera& at) const {
-    return evaluate_view(read_photograph(file), truth(at), execution_).psnr_db;
-  }
+  PosedScene() : PosedCameras(160, 120) { write_model(model_, {0, 0, 0, 0}); }
 
   /// With camera i turned by errors[i] degrees about its X axis from where it is.
   void write_model(const std::string& folder, const std::vector<double>& errors) const {
@@ -85,26 +38,6 @@ class PosedScene : public testing::Test {
   [[nodiscard]] ProcessResult view(const Words& more) const {
     return run_vantage(joined({"scene", "view", place_, "--quiet"}, more));
   }
-  void write_pose(const PosedCamera& at) const {
-    const Eigen::Matrix3d& r = at.rotation;
-    const Eigen::Matrix3d& k = at.matrix;
-    const Eigen::Vector3d& t = at.translation;
-    const nlohmann::json json = {
-        {"view",
-         {{{"K", {k(0, 0), 0, k(0, 2), 0, k(1, 1), k(1, 2), 0, 0, 1}},
-           {"R", {r(0, 0), r(0, 1), r(0, 2), r(1, 0), r(1, 1), r(1, 2), r(2, 0), r(2, 1), r(2, 2)}},
-           {"t", {t.x(), t.y(), t.z()}}}}}};
-    write_file(pose_, json.dump());
-  }
-
-  mutable Execution execution_{{.threads = 2}};
-  LayeredScene scene_{small_scene(), execution_};
-  TemporaryFolder folder_;
-  std::string images_ = folder_ / "images";
-  std::string model_ = folder_ / "model";
-  std::string place_ = folder_ / "scene";
-  std::string pose_ = folder_ / "pose.json";
-  std::vector<PosedCamera> cameras_;
 };
 
 TEST_F(PosedScene, ViewsOfAColmapModelComeFromSeveralImages) {
@@ -113,7 +46,7 @@ TEST_F(PosedScene, ViewsOfAColmapModelComeFromSeveralImages) {
               AllOf(HasSubstr("images 4, 160x120 pixels"), HasSubstr("0 refused")));
 
   const PosedCamera wanted = camera({0.5, 0.5, 0.05}, turn(0.2, 0.3, 1));
-  write_pose(wanted);
+  write_pose(wanted.rotation, wanted.translation);
   const auto psnr_of = [&](const std::string& sources) {
     succeeds(view({"--pose", pose_, "--sources", sources, "-o", folder_ / "v.png"}));
     return psnr(folder_ / "v.png", wanted);
@@ -220,9 +153,7 @@ TEST_F(PosedScene, TumPosesBelongToImagesNamedAfterTheirTimes) {
     write_file(folder_ / "tum.txt", text);
   };
   write_trajectory(0.01);  // images are 0.png to 3.png, the last one without a pose
-  const Eigen::Matrix3d& k = cameras_[0].matrix;
-  write_file(folder_ / "camera.txt",
-             fmt::format("{} {} {} {}\n", k(0, 0), k(1, 1), k(0, 2), k(1, 2)));
+  write_lens(folder_ / "camera.txt");
   EXPECT_THAT(build({"--poses", folder_ / "tum.txt"}).err, HasSubstr("expected --intrinsics too"));
   const ProcessResult built =
       succeeds(build({"--poses", folder_ / "tum.txt", "--intrinsics", folder_ / "camera.txt"}));

@@ -114,7 +114,7 @@ TEST_F(RunCamerasTest, RefusesWhatDoesNotGoTogether) {
        "--search-size has no effect with several images"},
       {{"--more", third_, "--baselines", "1,2", "--calibration", "rig.yml"},
        "--calibration cannot be used with --baselines"},
-      {{"--more", folder_ / "nothing", "--baselines", "1,2"}, "nothing"}};
+      {{"--more", folder_ / "nothing", "--baselines", "1,2"}, "nothing", 1}};
   expect_refusals("run", folder_.path(), refusals,
                   [&](const Words& words) { return run(folder_ / "out", words); });
 }

@@ -205,19 +205,14 @@ TEST(RunFilm, ComfortAgainstTruth) {
   EXPECT_GT(scale["shots"][0]["max_px"], 1.4);
 }
 
-class RunFilms : public RunTest {
- protected:
-  [[nodiscard]] nlohmann::json json_of(const std::string& name) const {
-    return read_json(folder_ / name);
-  }
-};
+using RunFilms = RunTest;
 
 /// Every level is the disparity of the map, rounded.
 TEST_F(RunFilms, DepthVideosHoldTheMaps) {
   succeeds(
       run(folder_ / "out",
           words("--save disparity,depth-video --frames 0-6 --chunk-frames 5 --fps 24000/1001")));
-  const nlohmann::json scale = json_of("out/depth-video.json");
+  const nlohmann::json scale = read_json(folder_ / "out/depth-video.json");
   EXPECT_EQ(scale["bits"], 16);
   const float min = scale["shots"][0]["min_px"];
   const float max = scale["shots"][0]["max_px"];

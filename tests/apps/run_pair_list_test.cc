@@ -145,7 +145,7 @@ TEST_F(RunPairList, WhatColumnsDoNotAllowIsRefused) {
   const std::string ranges =
       "left,right,min-disparity,max-disparity\nleft/000002.png,right/000002.png,0,9\n";
   const std::vector<Case> cases = {
-      {"left,right,size\nleft/000002.png,right/000002.png,9\n", {}, "column 'size'"},
+      {"left,right,size\nleft/000002.png,right/000002.png,9\n", {}, "column 'size'", 1},
       {calibrated, {"--view", "0.5"}, "a view is defined by one pair of cameras"},
       {calibrated,
        {"--focal-length", "60", "--baseline", "1", "--save", "depth"},
@@ -153,12 +153,15 @@ TEST_F(RunPairList, WhatColumnsDoNotAllowIsRefused) {
       {calibrated + "left/000003.png,right/000003.png,\n",
        {"--save", "depth", "--calibration-unit", "m"},
        "000003.png has no calibration"},
-      {calibrated, {"--save", "depth"}, "turned.yml: does not say how long its unit is"},
+      {calibrated, {"--save", "depth"}, "turned.yml: does not say how long its unit is", 1},
       {ranges, {"--calibration-unit", "m"}, "--calibration-unit has no effect"},
       {ranges, {"--save", "depth"}, "has no calibration"},
       {ranges, {"--temporal-prior", "1"}, "disparities are passed from frame to frame"},
       {ranges, {"--save", "depth-video"}, "--depth-range MIN:MAX"},
-      {"left,right,calibration\nleft/000002.png,right/000002.png,rigs/none.yml\n", {}, "none.yml"},
+      {"left,right,calibration\nleft/000002.png,right/000002.png,rigs/none.yml\n",
+       {},
+       "none.yml",
+       1},
       {ranges, {"--save", "depth", "--doffs", "3"}, "--doffs has no effect without --focal-length"},
       {ranges, {"--kitti-cameras", "2,3"}, "--kitti-cameras has no effect"},
       {"left,right,min-disparity,max-disparity\nleft/000002.png,right/000002.png,0,9999\n",

@@ -72,13 +72,14 @@ struct Refusal {
 /// the words. Under a sanitizer, where each process takes long to begin, a sample of them.
 template <typename Run>
 void expect_refusals(const std::string& command, const fs::path& folder,
-                     const std::vector<Refusal>& refusals, const Run& run) {
+                     const std::vector<Refusal>& refusals, const Run& run,
+                     std::source_location where = std::source_location::current()) {
   SCOPED_TRACE(test::sample_name());
   const Words before = files_below(folder);
   const auto stream = static_cast<std::uint32_t>(refusals.size());
   for (const Refusal& refusal :
        test_paths::is_sanitized() ? sampled(refusals, 10, stream) : refusals) {
-    expect_one_line(run(refusal.words), refusal.exit_code, command, refusal.says);
+    expect_one_line(run(refusal.words), refusal.exit_code, command, refusal.says, where);
   }
   EXPECT_EQ(files_below(folder), before);
 }

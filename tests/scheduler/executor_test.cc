@@ -13,8 +13,7 @@
 
 #include "tests/scheduler/executor_cases.h"
 
-namespace vantage::scheduler {
-namespace executor_test {
+namespace vantage::scheduler::executor_test {
 
 /// Counts the calls of every task.
 class Calls {
@@ -201,5 +200,4 @@ TEST(ShuffledExecutor, RunsTasksInAnotherOrderEachTime) {
   EXPECT_NE(first, order_of(*make_shuffled_executor(4)));
 }
 
-}  // namespace executor_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::executor_test

@@ -19,8 +19,7 @@
 #include "tests/scheduler/executor_cases.h"
 #include "tests/test_sample.h"
 
-namespace vantage::scheduler {
-namespace frame_pipeline_test {
+namespace vantage::scheduler::frame_pipeline_test {
 
 enum class Step { kRead, kPrepare, kCompute, kEncode, kWrite };
 constexpr Step kSteps[] = {Step::kRead, Step::kPrepare, Step::kCompute, Step::kEncode,
@@ -370,5 +369,4 @@ TEST_P(FramePipeline, FailureWhileStoppingIsStillReported) {
   EXPECT_EQ(sequence.written(), first_frames(3));
 }
 
-}  // namespace frame_pipeline_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::frame_pipeline_test

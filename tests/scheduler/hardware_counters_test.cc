@@ -18,8 +18,7 @@
 
 #include "tests/temporary_folder.h"
 
-namespace vantage::scheduler {
-namespace hardware_counters_test {
+namespace vantage::scheduler::hardware_counters_test {
 
 using testing::HasSubstr;
 
@@ -175,5 +174,4 @@ TEST(HardwareCounters, ScaleWhatTookTurns) {
   EXPECT_THAT(never.absence, HasSubstr("in use"));
 }
 
-}  // namespace hardware_counters_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::hardware_counters_test

@@ -9,8 +9,7 @@
 
 #include "scheduler/executor.h"
 
-namespace vantage::scheduler {
-namespace interruption_test {
+namespace vantage::scheduler::interruption_test {
 
 class InterruptionTest : public testing::TestWithParam<ExecutorKind> {
  protected:
@@ -71,5 +70,4 @@ INSTANTIATE_TEST_SUITE_P(Executors, InterruptionTest,
                          testing::Values(ExecutorKind::kTbb, ExecutorKind::kOpenMp,
                                          ExecutorKind::kSerial));
 
-}  // namespace interruption_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::interruption_test

@@ -6,8 +6,7 @@
 
 #include "tests/scheduler/executor_cases.h"
 
-namespace vantage::scheduler {
-namespace processor_account_test {
+namespace vantage::scheduler::processor_account_test {
 
 double processor_seconds(clockid_t clock) {
   timespec time{};
@@ -52,5 +51,4 @@ TEST_P(ProcessorAccounts, HoldTheTimeOfTheTasks) {
   EXPECT_LE(inner.seconds(), 4 * kTasks * kTaskSeconds);
 }
 
-}  // namespace processor_account_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::processor_account_test

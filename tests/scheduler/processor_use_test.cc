@@ -9,8 +9,7 @@
 #include <chrono>
 #include <thread>
 
-namespace vantage::scheduler {
-namespace processor_use_test {
+namespace vantage::scheduler::processor_use_test {
 
 using Clock = std::chrono::steady_clock;
 
@@ -59,5 +58,4 @@ TEST(ProcessorUse, IsNotThatOfThisProcess) {
   EXPECT_LE(min_excess, 0.5);
 }
 
-}  // namespace processor_use_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::processor_use_test

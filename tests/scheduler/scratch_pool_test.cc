@@ -11,8 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace vantage::scheduler {
-namespace scratch_pool_test {
+namespace vantage::scheduler::scratch_pool_test {
 
 TEST(ScratchPool, MemoryIsAlignedAndWritable) {
   ScratchPool pool;
@@ -133,5 +132,4 @@ TEST(ScratchPool, KnowsTheMostThatWasLeasedForAUse) {
   EXPECT_EQ(pool.max_leased_bytes(ScratchUse::kOther), 0U);
 }
 
-}  // namespace scratch_pool_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::scratch_pool_test

@@ -16,8 +16,7 @@
 #include "scheduler/executor.h"
 #include "scheduler/interruption.h"
 
-namespace vantage::scheduler {
-namespace shared_threads_test {
+namespace vantage::scheduler::shared_threads_test {
 
 void sleep_ms(int duration_ms) {
   std::this_thread::sleep_for(std::chrono::milliseconds(duration_ms));
@@ -184,5 +183,4 @@ INSTANTIATE_TEST_SUITE_P(Executors, SharedThreadsTest,
                          testing::Values(ExecutorKind::kTbb, ExecutorKind::kOpenMp,
                                          ExecutorKind::kSerial));
 
-}  // namespace shared_threads_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::shared_threads_test

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -19,8 +20,7 @@
 #include "tests/scheduler/test_stages.h"
 #include "tests/test_sample.h"
 
-namespace vantage::scheduler {
-namespace strip_pipeline_test {
+namespace vantage::scheduler::strip_pipeline_test {
 
 using vantage::test::sampled_rows;
 using vantage::test::SampleRow;
@@ -51,18 +51,15 @@ void spoil(ScratchPool& pool, std::size_t bytes) {
   std::memset(lease.data(), 0xFD, bytes);
 }
 
-std::size_t spoilt_bytes(const ChainPlan& plan) {
-  std::size_t bytes = plan.stored_bytes;
-  for (const PassPlan& pass : plan.passes) {
-    bytes = std::max(bytes, pass.scratch_bytes);
-  }
-  return bytes;
+/// Of the pass that has most of it.
+std::size_t scratch_bytes(const ChainPlan& plan) {
+  return std::ranges::max_element(plan.passes, {}, &PassPlan::scratch_bytes)->scratch_bytes;
 }
 
 std::vector<std::byte> strip_result(const TestChain& chain, const ChainPlan& plan,
                                     Executor& executor) {
   ScratchPool pool;
-  spoil(pool, spoilt_bytes(plan));
+  spoil(pool, std::max(plan.stored_bytes, scratch_bytes(plan)));
   chain.sink().forget();
   run_strips(chain.stages(), plan, executor, pool);
   EXPECT_TRUE(chain.sink().every_cell_came_once());
@@ -91,19 +88,21 @@ constexpr std::optional<int> kStrips[] = {1, 2, 7, 16, kAll, std::nullopt};
 constexpr std::optional<int> kBands[] = {1, 3, 6, kAll, std::nullopt};
 constexpr int kSplits = 5;
 
+std::vector<int> behind_every_stage(const TestChain& chain) {
+  std::vector<int> ends(static_cast<std::size_t>(chain.size()) - 1);
+  std::iota(ends.begin(), ends.end(), 1);
+  return ends;
+}
+
 /// Nowhere, half way, behind every stage, before the last, where the cost model wants it.
 std::optional<std::vector<int>> split_of(const TestChain& chain, int split) {
-  std::vector<int> every;
-  for (int stage = 1; stage < chain.size(); ++stage) {
-    every.push_back(stage);
-  }
   switch (split) {
     case 0:
       return std::vector<int>{};
     case 1:
       return std::vector<int>{std::max(1, chain.size() / 2)};
     case 2:
-      return every;
+      return behind_every_stage(chain);
     case 3:
       return std::vector<int>{chain.size() - 1};
     default:
@@ -137,9 +136,7 @@ class CutSample {
     const Extent extent = kExtents[row[2]];
     auto [known, is_new] = known_.try_emplace({row[0], row[1], row[2], row[3]}, false);
     if (is_new) {
-      TestChain chain(extent);
-      kChains[static_cast<std::size_t>(row[0])].build(chain);
-      chain.finish();
+      const TestChain chain(extent, kChains[static_cast<std::size_t>(row[0])]);
       double cells = 0;
       for (const PassPlan& pass : plan_of(chain, cut_of(chain, row)).passes) {
         cells +=
@@ -154,10 +151,7 @@ class CutSample {
 
 class StripPipeline : public testing::TestWithParam<int> {
  protected:
-  static void build(TestChain& chain) {
-    kChains[static_cast<std::size_t>(GetParam())].build(chain);
-    chain.finish();
-  }
+  static const ChainCase& chain_case() { return kChains[static_cast<std::size_t>(GetParam())]; }
 };
 INSTANTIATE_TEST_SUITE_P(Chains, StripPipeline, testing::Range(0, static_cast<int>(kChains.size())),
                          [](const auto& test) {
@@ -170,8 +164,7 @@ TEST_P(StripPipeline, EqualsTheWholeImageBitForBit) {
   for (const SampleRow& row : test::rows_of(CutSample::rows(), GetParam())) {
     auto& [chain, expected] = chains[row[2]];
     if (chain == nullptr) {
-      chain = std::make_unique<TestChain>(kExtents[row[2]]);
-      build(*chain);
+      chain = std::make_unique<TestChain>(kExtents[row[2]], chain_case());
       expected = whole_image_result(*chain);
     }
     const Cut cut = CutSample::cut_of(*chain, row);
@@ -185,9 +178,7 @@ TEST_P(StripPipeline, EqualsTheWholeImageBitForBit) {
 
 TEST(StripPipelineSteps, EqualTheWholeImageAsTheCostModelChoosesThem) {
   const Extent extent{97, 61};
-  TestChain chain(extent);
-  kSourceEachTime.build(chain);
-  chain.finish();
+  TestChain chain(extent, kSourceEachTime);
   const std::vector<std::byte> expected = whole_image_result(chain);
   Machine tiny;
   tiny.l1_data_bytes = 1024;
@@ -205,8 +196,7 @@ TEST(StripPipelineSteps, EqualTheWholeImageAsTheCostModelChoosesThem) {
 }
 
 TEST_P(StripPipeline, AllocatesNothingInSteadyState) {
-  TestChain chain({40, 20});
-  build(chain);
+  const TestChain chain({40, 20}, chain_case());
   const auto executor = make_executor(ExecutorKind::kSerial, 1);
   for (const Cut& cut : {Cut{9, 6, kOnePass}, Cut{9, 6, std::vector<int>{1}}}) {
     const ChainPlan plan = plan_of(chain, cut);
@@ -232,9 +222,7 @@ INSTANTIATE_TEST_SUITE_P(Chains, SourceReaders,
 TEST_P(SourceReaders, MayBeCutIntoPassesAnywhere) {
   const auto executor = make_shuffled_executor(3);
   for (const Extent extent : {Extent{1, 1}, Extent{5, 2}, Extent{3, 19}, Extent{17, 13}}) {
-    TestChain chain(extent);
-    GetParam().build(chain);
-    chain.finish();
+    TestChain chain(extent, GetParam());
     const std::vector<std::byte> expected = whole_image_result(chain);
     for (int first = 1; first < chain.size(); ++first) {
       for (int second = first; second < chain.size(); ++second) {
@@ -251,11 +239,7 @@ TEST_P(SourceReaders, MayBeCutIntoPassesAnywhere) {
 }
 
 bool fits(const ChainPlan& plan, const PlanRequest& request) {
-  std::size_t scratch = 0;
-  for (const PassPlan& pass : plan.passes) {
-    scratch = std::max(scratch, pass.scratch_bytes);
-  }
-  return plan.stored_bytes + scratch * static_cast<std::size_t>(request.threads) <=
+  return plan.stored_bytes + scratch_bytes(plan) * static_cast<std::size_t>(request.threads) <=
          request.memory_bytes.value_or(kDefaultMemoryBytes);
 }
 
@@ -283,16 +267,10 @@ INSTANTIATE_TEST_SUITE_P(Chains, StepsOfFewRows,
 
 TEST_P(StepsOfFewRows, EqualTheWholeImageBitForBit) {
   const Extent extent{13, 41};
-  TestChain chain(extent);
-  kStepChains[static_cast<std::size_t>(GetParam())].build(chain);
-  chain.finish();
+  const TestChain chain(extent, kStepChains[static_cast<std::size_t>(GetParam())]);
   const std::vector<std::byte> expected = whole_image_result(chain);
-  std::vector<int> every;
-  for (int stage = 1; stage < chain.size(); ++stage) {
-    every.push_back(stage);
-  }
   const std::vector<ExecutorCase> executors = executor_cases();
-  std::vector<std::vector<int>> splits = {every, {chain.size() / 2}};
+  std::vector<std::vector<int>> splits = {behind_every_stage(chain), {chain.size() / 2}};
   if (chain.size() > 3) {
     splits.push_back({1, chain.size() - 1});
   }
@@ -310,12 +288,8 @@ TEST_P(StepsOfFewRows, EqualTheWholeImageBitForBit) {
       EXPECT_EQ(whole.step_rows, extent.rows);
       std::vector<int> all_step_rows;
       for (int part = 0; part < static_cast<int>(std::size(kParts)); ++part) {
-        std::size_t scratch = 0;
-        for (const PassPlan& pass : whole.passes) {
-          scratch = std::max(scratch, pass.scratch_bytes);
-        }
         request.memory_bytes =
-            2 * scratch +
+            2 * scratch_bytes(whole) +
             static_cast<std::size_t>(kParts[part] * static_cast<double>(whole.stored_bytes));
         const ChainPlan plan = plan_chain(chain.stages(), Machine{}, request);
         ASSERT_GT(plan.steps, 1);
@@ -342,9 +316,7 @@ TEST_P(StepsOfFewRows, EqualTheWholeImageBitForBit) {
 
 TEST(StripPipelineSteps, StoredRowsStayWithinTheMemoryGiven) {
   const Extent extent{16, 211};
-  TestChain chain(extent);
-  kSourceEachTime.build(chain);
-  chain.finish();
+  TestChain chain(extent, kSourceEachTime);
   const std::vector<std::byte> expected = whole_image_result(chain);
   const auto executor = make_executor(ExecutorKind::kSerial, 1);
   PlanRequest request;
@@ -365,9 +337,7 @@ TEST(StripPipelineSteps, StoredRowsStayWithinTheMemoryGiven) {
 }
 
 TEST(StripPipelineSteps, ChainsThatChangeTheNumberOfRowsTakeWholeImages) {
-  TestChain chain({29, 23});
-  kScales.build(chain);
-  chain.finish();
+  TestChain chain({29, 23}, kScales);
   const std::vector<std::byte> expected = whole_image_result(chain);
   const auto executor = make_executor(ExecutorKind::kSerial, 1);
   PlanRequest request;
@@ -596,5 +566,4 @@ TEST(StripPipelineTest, FindsStagesThatDependOnTheCut) {
   EXPECT_TRUE(depends_on<LooksTooFar>({kAll, kAll, kOnePass}));
 }
 
-}  // namespace strip_pipeline_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::strip_pipeline_test

@@ -12,8 +12,7 @@
 #include "scheduler/machine.h"
 #include "scheduler/sweep_layout.h"
 
-namespace vantage::scheduler {
-namespace strip_plan_test {
+namespace vantage::scheduler::strip_plan_test {
 
 /// A stage that is all geometry: `halo` rows and columns around each cell.
 class Geometry final : public RowStage {
@@ -78,12 +77,13 @@ GeometryChain iterations(Extent extent, int count, std::size_t bytes_per_column)
   return {extent, count, 1, bytes_per_column, 1, true};
 }
 
+/// Of the pass that has most of it.
+std::size_t scratch_bytes(const ChainPlan& plan) {
+  return std::ranges::max_element(plan.passes, {}, &PassPlan::scratch_bytes)->scratch_bytes;
+}
+
 std::size_t bytes_taken(const ChainPlan& plan, int threads) {
-  std::size_t scratch = 0;
-  for (const PassPlan& pass : plan.passes) {
-    scratch = std::max(scratch, pass.scratch_bytes);
-  }
-  return plan.stored_bytes + scratch * static_cast<std::size_t>(threads);
+  return plan.stored_bytes + scratch_bytes(plan) * static_cast<std::size_t>(threads);
 }
 
 double expected_time(const ChainPlan& plan) {
@@ -118,15 +118,13 @@ void expect_sound(const ChainPlan& plan, Chain chain) {
   EXPECT_EQ(next_stage, static_cast<int>(chain.size()));
 }
 
-Extent extent_of(int columns, int rows) { return {columns, rows}; }
-
 int tasks(const PassPlan& pass) { return pass.strips * pass.bands; }
 
 TEST(StripPlan, CoversImagesOfAnySizeOnce) {
   const int sizes[] = {1, 2, 3, 7, 16, 17, 61, 450, 3840};
   for (const int columns : sizes) {
     for (const int rows : sizes) {
-      const GeometryChain chain(extent_of(columns, rows), 2, 1);
+      const GeometryChain chain({columns, rows}, 2, 1);
       for (const int threads : {1, 4, 64}) {
         PlanRequest request;
         request.threads = threads;
@@ -319,11 +317,7 @@ TEST(StripPlan, StripsFillLevelThreeOnlyWhereItIsNear) {
     machine.l3_bytes = l3_megabytes << 20U;
     const ChainPlan plan = plan_chain(chain.stages(), machine, request);
     expect_sound(plan, chain.stages());
-    std::size_t max = 0;
-    for (const PassPlan& pass : plan.passes) {
-      max = std::max(max, pass.scratch_bytes);
-    }
-    return max;
+    return scratch_bytes(plan);
   };
   for (const int threads : {1, 2}) {
     request.threads = threads;
@@ -518,5 +512,4 @@ TEST(Machine, IsDescribedSensibly) {
   EXPECT_GE(machine.l2_bytes, machine.l1_data_bytes);
 }
 
-}  // namespace strip_plan_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::strip_plan_test

@@ -8,8 +8,7 @@
 #include "tests/scheduler/executor_cases.h"
 #include "tests/scheduler/test_chains.h"
 
-namespace vantage::scheduler {
-namespace strip_regions_test {
+namespace vantage::scheduler::strip_regions_test {
 
 class StripRegions : public testing::TestWithParam<ChainCase> {};
 INSTANTIATE_TEST_SUITE_P(Chains, StripRegions,
@@ -32,9 +31,7 @@ std::vector<Region> regions_of(Extent extent) {
 
 TEST_P(StripRegions, EqualTheirPartsOfTheWholeImage) {
   for (const Extent extent : {Extent{1, 1}, {29, 23}}) {
-    TestChain chain(extent);
-    GetParam().build(chain);
-    chain.finish();
+    TestChain chain(extent, GetParam());
     const std::vector<std::byte> expected = whole_image_result(chain);
     for (const ExecutorCase& executor : executor_cases()) {
       ScratchPool pool;
@@ -51,9 +48,7 @@ TEST_P(StripRegions, EqualTheirPartsOfTheWholeImage) {
 }
 
 TEST(StripRegionsTest, NothingElseIsMade) {
-  TestChain chain({29, 23});
-  kBoxes.build(chain);
-  chain.finish();
+  TestChain chain({29, 23}, kBoxes);
   const auto executor = make_executor(ExecutorKind::kSerial, 1);
   ScratchPool pool;
   chain.sink().forget();
@@ -63,5 +58,4 @@ TEST(StripRegionsTest, NothingElseIsMade) {
   }
 }
 
-}  // namespace strip_regions_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::strip_regions_test

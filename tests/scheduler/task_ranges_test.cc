@@ -8,8 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace vantage::scheduler {
-namespace task_ranges_test {
+namespace vantage::scheduler::task_ranges_test {
 
 using testing::ElementsAre;
 
@@ -70,5 +69,4 @@ TEST(TaskRanges, ManyThreadsGetEveryTaskOnce) {
   EXPECT_THAT(taken, testing::Each(testing::Truly([](const auto& count) { return count == 1; })));
 }
 
-}  // namespace task_ranges_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::task_ranges_test

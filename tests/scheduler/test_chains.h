@@ -15,14 +15,30 @@
 
 namespace vantage::scheduler {
 
+class TestChain;
+struct ChainCase {
+  std::string name;
+  std::function<void(TestChain&)> build;
+};
+inline std::ostream& operator<<(std::ostream& out, const ChainCase& c) { return out << c.name; }
+
 /// A chain of stages that ends in a sink, each under supervision.
 class TestChain {
  public:
   explicit TestChain(Extent source) : extent_(source) {}
+  TestChain(Extent source, const ChainCase& finished) : TestChain(source) {
+    finished.build(*this);
+    finish();
+  }
 
   template <typename Stage, typename... Arguments>
   void add(Arguments... arguments) {
     add(std::make_unique<Stage>(arguments...));
+  }
+  /// A stage that keeps the extent.
+  template <typename Stage, typename... Arguments>
+  void next(Arguments... arguments) {
+    add(std::make_unique<Stage>(arguments..., extent_));
   }
   void add(std::unique_ptr<RowStage> stage) {
     const Extent input = stages_.empty() ? Extent{} : extent_;
@@ -48,33 +64,25 @@ class TestChain {
   Sink* sink_ = nullptr;
 };
 
-struct ChainCase {
-  std::string name;
-  std::function<void(TestChain&)> build;
-};
-inline std::ostream& operator<<(std::ostream& out, const ChainCase& c) { return out << c.name; }
-
-inline const ChainCase kHashed{"hashed",
-                               [](TestChain& chain) { chain.add<FloatSource>(chain.extent()); }};
+inline const ChainCase kHashed{"hashed", [](TestChain& chain) { chain.next<FloatSource>(); }};
 inline const ChainCase kDiffusion{"diffusion", [](TestChain& chain) {
-                                    chain.add<FloatSource>(chain.extent());
+                                    chain.next<FloatSource>();
                                     for (int iteration = 0; iteration < 10; ++iteration) {
-                                      chain.add<Diffusion>(chain.extent());
+                                      chain.next<Diffusion>();
                                     }
                                   }};
 inline const ChainCase kBoxes{"boxes", [](TestChain& chain) {
-                                chain.add<FloatSource>(chain.extent());
+                                chain.next<FloatSource>();
                                 for (const int radius : {1, 1, 1, 2}) {
-                                  chain.add<Box>(radius, chain.extent());
+                                  chain.next<Box>(radius);
                                 }
                               }};
-inline const ChainCase kRunning{"running",
-                                [](TestChain& chain) { chain.add<RunningSum>(2, chain.extent()); }};
+inline const ChainCase kRunning{"running", [](TestChain& chain) { chain.next<RunningSum>(2); }};
 inline const ChainCase kAnchored{"anchored", [](TestChain& chain) {
-                                   chain.add<FloatSource>(chain.extent());
-                                   chain.add<AnchoredSum>(3, chain.extent());
-                                   chain.add<Box>(1, chain.extent());
-                                   chain.add<AnchoredSum>(1, chain.extent());
+                                   chain.next<FloatSource>();
+                                   chain.next<AnchoredSum>(3);
+                                   chain.next<Box>(1);
+                                   chain.next<AnchoredSum>(1);
                                  }};
 inline const ChainCase kScales{"scales", [](TestChain& chain) {
                                  const Extent full = chain.extent();
@@ -84,7 +92,7 @@ inline const ChainCase kScales{"scales", [](TestChain& chain) {
                                  const Extent half = chain.extent();
                                  chain.add<Diffusion>(half);
                                  chain.add<Reduction>(half);
-                                 chain.add<AnchoredSum>(1, chain.extent());
+                                 chain.next<AnchoredSum>(1);
                                  chain.add<Expansion>(half);
                                  chain.add<Diffusion>(half);
                                  chain.add<Expansion>(full);
@@ -92,43 +100,38 @@ inline const ChainCase kScales{"scales", [](TestChain& chain) {
                                }};
 
 inline const ChainCase kSourceNext{"source_next", [](TestChain& chain) {
-                                     const Extent extent = chain.extent();
-                                     chain.add<RunningSum>(1, extent);
-                                     chain.add<Mixture>(0, 0, true, extent);
+                                     chain.next<RunningSum>(1);
+                                     chain.next<Mixture>(0, 0, true);
                                    }};
 inline const ChainCase kSourceTwice{"source_twice", [](TestChain& chain) {
-                                      const Extent extent = chain.extent();
-                                      chain.add<RunningSum>(1, extent);
-                                      chain.add<Mixture>(1, 1, false, extent);
-                                      chain.add<Mixture>(0, 2, true, extent);
-                                      chain.add<Mixture>(1, 0, false, extent);
-                                      chain.add<Mixture>(2, 3, true, extent);
-                                      chain.add<Mixture>(1, 1, false, extent);
+                                      chain.next<RunningSum>(1);
+                                      chain.next<Mixture>(1, 1, false);
+                                      chain.next<Mixture>(0, 2, true);
+                                      chain.next<Mixture>(1, 0, false);
+                                      chain.next<Mixture>(2, 3, true);
+                                      chain.next<Mixture>(1, 1, false);
                                     }};
 inline const ChainCase kSourceEachTime{"source_each_time", [](TestChain& chain) {
-                                         const Extent extent = chain.extent();
-                                         chain.add<RunningSum>(2, extent);
+                                         chain.next<RunningSum>(2);
                                          for (int iteration = 0; iteration < 10; ++iteration) {
-                                           chain.add<Mixture>(1, 1, true, extent);
+                                           chain.next<Mixture>(1, 1, true);
                                          }
                                        }};
 inline const ChainCase kSourceAfterSmoothing{"source_after_smoothing", [](TestChain& chain) {
-                                               const Extent extent = chain.extent();
-                                               chain.add<RunningSum>(2, extent);
-                                               chain.add<Mixture>(5, 5, false, extent);
-                                               chain.add<Mixture>(1, 1, false, extent);
+                                               chain.next<RunningSum>(2);
+                                               chain.next<Mixture>(5, 5, false);
+                                               chain.next<Mixture>(1, 1, false);
                                                for (int iteration = 0; iteration < 4; ++iteration) {
-                                                 chain.add<Mixture>(1, 1, true, extent);
+                                                 chain.next<Mixture>(1, 1, true);
                                                }
                                              }};
 inline const ChainCase kSourceAnchored{"source_anchored", [](TestChain& chain) {
-                                         const Extent extent = chain.extent();
-                                         chain.add<FloatSource>(extent);
-                                         chain.add<AnchoredSum>(3, extent);
-                                         chain.add<PullToSource>(extent);
-                                         chain.add<Diffusion>(extent);
-                                         chain.add<AnchoredSum>(1, extent);
-                                         chain.add<PullToSource>(extent);
+                                         chain.next<FloatSource>();
+                                         chain.next<AnchoredSum>(3);
+                                         chain.next<PullToSource>();
+                                         chain.next<Diffusion>();
+                                         chain.next<AnchoredSum>(1);
+                                         chain.next<PullToSource>();
                                        }};
 
 inline constexpr Extent kSizes[] = {{1, 1}, {1, 7}, {7, 1}, {13, 11}, {64, 3}, {97, 61}};

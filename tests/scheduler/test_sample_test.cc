@@ -6,8 +6,7 @@
 #include <set>
 #include <tuple>
 
-namespace vantage::test {
-namespace test_sample_test {
+namespace vantage::test::test_sample_test {
 
 /// Sets or clears an environment variable while it exists.
 class Variable {
@@ -127,5 +126,4 @@ TEST(TestSample, RowsOfAnInstanceBeginWithIt) {
   EXPECT_EQ(rows_of({{0, 1}, {1, 0}, {0, 2}}, 0), (std::vector<SampleRow>{{0, 1}, {0, 2}}));
 }
 
-}  // namespace test_sample_test
-}  // namespace vantage::test
+}  // namespace vantage::test::test_sample_test

@@ -19,8 +19,7 @@
 #include "scheduler/thread_places.h"
 #include "scheduler/topology.h"
 
-namespace vantage::scheduler {
-namespace thread_binding_test {
+namespace vantage::scheduler::thread_binding_test {
 
 using testing::ElementsAre;
 
@@ -239,5 +238,4 @@ TEST(LoopsOnNodes, AllNodesTakePart) {
   EXPECT_THAT(nodes, ElementsAre(0, 1, 2));
 }
 
-}  // namespace thread_binding_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::thread_binding_test

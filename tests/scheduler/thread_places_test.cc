@@ -9,8 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace vantage::scheduler {
-namespace thread_places_test {
+namespace vantage::scheduler::thread_places_test {
 
 using testing::ElementsAre;
 
@@ -111,5 +110,4 @@ TEST(DivideInProportion, RoundsEveryPartToANeighbour) {
   }
 }
 
-}  // namespace thread_places_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::thread_places_test

@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace vantage::scheduler {
-namespace topology_test {
+namespace vantage::scheduler::topology_test {
 
 using testing::ElementsAre;
 
@@ -90,5 +89,4 @@ TEST(Topology, OfThisMachineIsWhatThisProcessMayUse) {
   }
 }
 
-}  // namespace topology_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::topology_test

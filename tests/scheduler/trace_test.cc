@@ -18,8 +18,7 @@
 #include "tests/scheduler/executor_cases.h"
 #include "tests/scheduler/test_chains.h"
 
-namespace vantage::scheduler {
-namespace trace_test {
+namespace vantage::scheduler::trace_test {
 
 using std::chrono::milliseconds;
 
@@ -297,5 +296,4 @@ TEST(TraceSummary, CountsWhatSpansWithinDoNotCover) {
   EXPECT_NEAR(summary.work_share(), 0.4, 1e-9);
 }
 
-}  // namespace trace_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::trace_test

@@ -14,8 +14,7 @@
 
 // The oracle of the strip pipeline against plain loops over arrays.
 
-namespace vantage::scheduler {
-namespace whole_image_pipeline_test {
+namespace vantage::scheduler::whole_image_pipeline_test {
 
 using Plane = std::vector<float>;  // [y][x][lane]
 
@@ -39,9 +38,7 @@ Plane hashed_plane(Extent extent) {
 
 template <typename Value>
 std::vector<Value> whole_image_values(const ChainCase& chain_case, Extent extent) {
-  TestChain chain(extent);
-  chain_case.build(chain);
-  chain.finish();
+  TestChain chain(extent, chain_case);
   const std::vector<std::byte> cells = whole_image_result(chain);
   std::vector<Value> values(cells.size() / sizeof(Value));
   std::memcpy(values.data(), cells.data(), cells.size());
@@ -151,5 +148,4 @@ TEST(WholeImagePipeline, MixesTheSourceLikePlainLoops) {
   }
 }
 
-}  // namespace whole_image_pipeline_test
-}  // namespace vantage::scheduler
+}  // namespace vantage::scheduler::whole_image_pipeline_test
