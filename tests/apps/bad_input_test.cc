@@ -1,4 +1,3 @@
-
 #include "tests/apps/pair_fixture.h"
 #include "tests/test_paths.h"
 

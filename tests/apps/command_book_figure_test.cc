@@ -1,5 +1,3 @@
-
-
 #include "tests/apps/sampling.h"
 #include "tests/well_formed_xml.h"
 

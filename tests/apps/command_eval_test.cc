@@ -1,4 +1,3 @@
-
 #include <limits>
 
 #include "tests/apps/pair_fixture.h"

@@ -1,5 +1,3 @@
-
-
 #include "tests/apps/pair_fixture.h"
 
 namespace vantage::command_generate_test {

@@ -1,5 +1,3 @@
-
-
 #include "engine/matching/stereo_matcher.h"
 #include "tests/apps/sampling.h"
 

@@ -1,5 +1,3 @@
-
-
 #include "engine/generation/layered_scene.h"
 #include "engine/rectification/stereo_calibration.h"
 #include "engine/rectification/vertical_error.h"

@@ -1,5 +1,3 @@
-
-
 #include "engine/tuning/tuning_file.h"
 #include "engine/tuning/tuning_key.h"
 #include "scheduler/machine.h"

@@ -1,4 +1,3 @@
-
 #include <limits>
 #include <regex>
 #include <variant>

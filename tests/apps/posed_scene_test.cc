@@ -1,4 +1,3 @@
-
 #include <cstring>
 
 #include "tests/apps/posed_cameras.h"
