@@ -94,7 +94,7 @@ void add_truth(const std::vector<Plane>& planes, std::vector<double>& disparitie
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       const int plane = hit_at(planes, x, y, 0).plane;
-      const double d = planes[static_cast<std::size_t>(plane)].disparity(y);
+      const double d = planes[plane].disparity(y);
       if (x - d >= 0 && x - d <= kWidth - 1 && hit_at(planes, x - d, y, 1).plane == plane) {
         disparities_px.push_back(d);
       }
@@ -106,7 +106,7 @@ double percentile(std::vector<double> values, double share) {
   const auto place =
       static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
   std::ranges::nth_element(values, values.begin() + place);
-  return values[static_cast<std::size_t>(place)];
+  return values[place];
 }
 
 /// Writes the frames of a shot as packed pictures and returns their disparities. What is in front

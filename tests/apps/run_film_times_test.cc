@@ -67,8 +67,7 @@ class RunFilmTimes : public StreamTest {
     ASSERT_EQ(found.size(), static_cast<std::size_t>(count)) << video;
     const auto due = [&](int frame) { return 1001.0 / 24000 * (frame + frame / 4 * 4); };
     for (int i = 0; i < count; ++i) {
-      EXPECT_NEAR(found[static_cast<std::size_t>(i)] - found[0], due(first + i * step) - due(first),
-                  tolerance_seconds)
+      EXPECT_NEAR(found[i] - found[0], due(first + i * step) - due(first), tolerance_seconds)
           << video << " " << i;
     }
   }

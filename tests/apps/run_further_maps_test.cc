@@ -80,7 +80,7 @@ TEST_F(RunFurtherMaps, DepthResolutionsAreThoseOfTheDisparities) {
     }
     std::ranges::sort(disparities);
     medians.push_back(disparities[disparities.size() / 2]);
-    const auto& entry = values["frames"][static_cast<std::size_t>(frame)];
+    const auto& entry = values["frames"][frame];
     EXPECT_EQ(entry["frame"], frame);
     EXPECT_EQ(entry["median"]["disparity_px"].get<float>(), medians.back());
     EXPECT_FLOAT_EQ(entry["farthest"]["depth_resolution"].get<float>(),

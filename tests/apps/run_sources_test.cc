@@ -10,7 +10,7 @@ namespace vantage::run_sources_test {
 constexpr int kBad = 7;
 
 std::vector<int> numbers(int first, int end) {
-  std::vector<int> all(static_cast<std::size_t>(end - first));
+  std::vector<int> all(end - first);
   std::iota(all.begin(), all.end(), first);
   return all;
 }

@@ -56,7 +56,7 @@ template <typename Case>
 std::vector<Case> sampled(const std::vector<Case>& cases, int count, std::uint32_t stream) {
   std::vector<Case> chosen;
   for (const int i : sampled_range(0, static_cast<int>(cases.size()) - 1, count, stream)) {
-    chosen.push_back(cases[static_cast<std::size_t>(i)]);
+    chosen.push_back(cases[i]);
   }
   return chosen;
 }

@@ -19,7 +19,7 @@ namespace vantage::scheduler::executor_test {
 class Calls {
  public:
   explicit Calls(int tasks) : counts_(static_cast<std::size_t>(tasks)) {}
-  void add(int task) { ++counts_.at(static_cast<std::size_t>(task)); }
+  void add(int task) { ++counts_.at(task); }
   [[nodiscard]] bool all_are(int count) const {
     for (const std::atomic<int>& calls : counts_) {
       if (calls != count) {
@@ -67,10 +67,9 @@ TEST_P(ExecutorTest, HasDoneEverythingWhenItReturns) {
   // Plain memory: what tasks wrote is there for the caller, without any other means.
   std::vector<int> values(1000, 0);
   for (int round = 1; round <= 5; ++round) {
-    executor().parallel_for(1000,
-                            [&](int task) { values[static_cast<std::size_t>(task)] += task; });
+    executor().parallel_for(1000, [&](int task) { values[task] += task; });
     for (int task = 0; task < 1000; ++task) {
-      ASSERT_EQ(values[static_cast<std::size_t>(task)], round * task);
+      ASSERT_EQ(values[task], round * task);
     }
   }
 }

@@ -142,12 +142,11 @@ class Sequence {
     std::atomic<int>& inside_;
   };
 
-  int& frame_in(int slot) { return slot_frame_.at(static_cast<std::size_t>(slot)); }
+  int& frame_in(int slot) { return slot_frame_.at(slot); }
 
   void nested_loop() {
     std::array<std::atomic<int>, kNestedTasks> calls{};
-    executor_.parallel_for(kNestedTasks,
-                           [&](int task) { ++calls.at(static_cast<std::size_t>(task)); });
+    executor_.parallel_for(kNestedTasks, [&](int task) { ++calls.at(task); });
     for (const std::atomic<int>& count : calls) {
       EXPECT_EQ(count, 1);
     }
@@ -219,14 +218,13 @@ class FramePipeline : public testing::TestWithParam<int> {
   }
 
  private:
-  std::unique_ptr<Executor> executor_ =
-      executor_cases()[static_cast<std::size_t>(GetParam())].make();
+  std::unique_ptr<Executor> executor_ = executor_cases()[GetParam()].make();
 };
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, FramePipeline, testing::Range(0, static_cast<int>(executor_cases().size())),
-    [](const auto& test) {
-      return executor_test_name({executor_cases()[static_cast<std::size_t>(test.param)], 0});
-    });
+INSTANTIATE_TEST_SUITE_P(Kinds, FramePipeline,
+                         testing::Range(0, static_cast<int>(executor_cases().size())),
+                         [](const auto& test) {
+                           return executor_test_name({executor_cases()[test.param], 0});
+                         });
 
 TEST_P(FramePipeline, WritesAllFramesInOrder) {
   for (const int in_flight : kInFlight) {

@@ -136,7 +136,7 @@ class CutSample {
     const Extent extent = kExtents[row[2]];
     auto [known, is_new] = known_.try_emplace({row[0], row[1], row[2], row[3]}, false);
     if (is_new) {
-      const TestChain chain(extent, kChains[static_cast<std::size_t>(row[0])]);
+      const TestChain chain(extent, kChains[row[0]]);
       double cells = 0;
       for (const PassPlan& pass : plan_of(chain, cut_of(chain, row)).passes) {
         cells +=
@@ -151,12 +151,10 @@ class CutSample {
 
 class StripPipeline : public testing::TestWithParam<int> {
  protected:
-  static const ChainCase& chain_case() { return kChains[static_cast<std::size_t>(GetParam())]; }
+  static const ChainCase& chain_case() { return kChains[GetParam()]; }
 };
 INSTANTIATE_TEST_SUITE_P(Chains, StripPipeline, testing::Range(0, static_cast<int>(kChains.size())),
-                         [](const auto& test) {
-                           return kChains[static_cast<std::size_t>(test.param)].name;
-                         });
+                         [](const auto& test) { return kChains[test.param].name; });
 
 TEST_P(StripPipeline, EqualsTheWholeImageBitForBit) {
   const std::vector<ExecutorCase> executors = executor_cases();
@@ -168,7 +166,7 @@ TEST_P(StripPipeline, EqualsTheWholeImageBitForBit) {
       expected = whole_image_result(*chain);
     }
     const Cut cut = CutSample::cut_of(*chain, row);
-    const ExecutorCase& executor_case = executors[static_cast<std::size_t>(row[4])];
+    const ExecutorCase& executor_case = executors[row[4]];
     const auto executor = executor_case.make();
     const ChainPlan plan = plan_of(*chain, cut, executor_case.threads);
     ASSERT_TRUE(strip_result(*chain, plan, *executor) == expected)
@@ -261,13 +259,11 @@ const std::vector<SampleRow>& steps_to_run() {
 class StepsOfFewRows : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Chains, StepsOfFewRows,
                          testing::Range(0, static_cast<int>(kStepChains.size())),
-                         [](const auto& test) {
-                           return kStepChains[static_cast<std::size_t>(test.param)].name;
-                         });
+                         [](const auto& test) { return kStepChains[test.param].name; });
 
 TEST_P(StepsOfFewRows, EqualTheWholeImageBitForBit) {
   const Extent extent{13, 41};
-  const TestChain chain(extent, kStepChains[static_cast<std::size_t>(GetParam())]);
+  const TestChain chain(extent, kStepChains[GetParam()]);
   const std::vector<std::byte> expected = whole_image_result(chain);
   const std::vector<ExecutorCase> executors = executor_cases();
   std::vector<std::vector<int>> splits = {behind_every_stage(chain), {chain.size() / 2}};
@@ -275,7 +271,7 @@ TEST_P(StepsOfFewRows, EqualTheWholeImageBitForBit) {
     splits.push_back({1, chain.size() - 1});
   }
   for (int s = 0; s < static_cast<int>(splits.size()); ++s) {
-    const std::vector<int>& split = splits[static_cast<std::size_t>(s)];
+    const std::vector<int>& split = splits[s];
     for (const int strip_columns : {4, kAll}) {
       const int band_rows = strip_columns == kAll ? kAll : 2;
       PlanRequest request;

@@ -59,7 +59,7 @@ TEST(TaskRanges, ManyThreadsGetEveryTaskOnce) {
   for (int thread = 0; thread < 6; ++thread) {
     threads.emplace_back([&, thread] {
       while (const std::optional<int> task = tasks.take(thread % 3)) {
-        ++taken.at(static_cast<std::size_t>(*task));
+        ++taken.at(*task);
       }
     });
   }
