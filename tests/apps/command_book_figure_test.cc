@@ -61,10 +61,7 @@ TEST(ExperimentCommand, IsReproducible) {
   const Words arguments =
       words("book figure 6.16 --size 24 --pairs real-square --noise 0,1 --iterations 1 --quiet -o");
   const auto run = [&](const std::string& out, const Words& more) {
-    auto all = arguments;
-    all.push_back(out);
-    all.insert(all.end(), more.begin(), more.end());
-    const ProcessResult result = succeeds(run_vantage(all));
+    const ProcessResult result = succeeds(run_vantage(joined(joined(arguments, {out}), more)));
     EXPECT_THAT(result.err, IsEmpty());
     return read_file(out + "/figure-6.16.csv");
   };

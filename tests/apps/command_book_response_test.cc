@@ -296,15 +296,14 @@ TEST_F(AutomaticDisparities, ACutRangeIsToldOf) {
   for (Words command : {match, run, synth}) {
     const ProcessResult whole = succeeds(run_vantage(command));
     EXPECT_THAT(whole.err, Not(HasSubstr("left out")));
-    command.insert(command.end(), {"--disparities", "0:10"});
+    command = joined(command, {"--disparities", "0:10"});
     const ProcessResult cut = succeeds(run_vantage(command));
     EXPECT_THAT(cut.err, HasSubstr("disparities above 10 seem to be left out"));
     EXPECT_EQ(cut.err.find("left out"), cut.err.rfind("left out")) << cut.err;
     const auto results = read_json(folder_ / "r.json")["results"];
     EXPECT_TRUE(results["cut_range"]["above"].get<bool>());
     EXPECT_FALSE(results["cut_range"]["below"].get<bool>());
-    command.push_back("--quiet");
-    EXPECT_EQ(run_vantage(command).err, "");
+    EXPECT_EQ(run_vantage(joined(command, {"--quiet"})).err, "");
   }
 }
 
@@ -349,10 +348,11 @@ TEST_F(AutomaticDisparities, OfTwoDimensions) {
   write_photograph(folder_ / "b.png", window(kAcross, kDown));
   write_photograph(folder_ / "at.png", transposed(window(0, 0)));
   write_photograph(folder_ / "bt.png", transposed(window(kAcross, kDown)));
-  const auto match = [&](const char* first, const char* second, Words more) {
-    more.insert(more.begin(), {"match", folder_ / first, folder_ / second, "-o", folder_ / "o.flo",
-                               "--disparities-y", "auto", "--method", "gradient"});
-    const ProcessResult result = succeeds(run_vantage(more));
+  const auto match = [&](const char* first, const char* second, const Words& more) {
+    const ProcessResult result = succeeds(
+        run_vantage(joined({"match", folder_ / first, folder_ / second, "-o", folder_ / "o.flo",
+                            "--disparities-y", "auto", "--method", "gradient"},
+                           more)));
     EXPECT_THAT(result.err, AllOf(HasSubstr("match: --disparities-y auto is 2:4\n"),
                                   HasSubstr("match: --disparities auto is")));
   };

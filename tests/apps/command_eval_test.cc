@@ -18,10 +18,9 @@ class EvalCommand : public testing::Test {
     write_disparity(map_, map.view());
   }
 
-  [[nodiscard]] nlohmann::json results(Words arguments) const {
-    arguments.insert(arguments.begin(), "eval");
-    arguments.insert(arguments.end(), {"--report", folder_ / "r.json"});
-    const ProcessResult result = succeeds(run_vantage(arguments));
+  [[nodiscard]] nlohmann::json results(const Words& arguments) const {
+    const Words report = {"--report", folder_ / "r.json"};
+    const ProcessResult result = succeeds(run_vantage(joined(joined({"eval"}, arguments), report)));
     EXPECT_EQ(result.err, "");
     table_ = result.out;
     return read_json(folder_ / "r.json")["results"];
@@ -46,9 +45,7 @@ TEST_F(EvalCommand, CountsUnknownPixelsAsBad) {
 }
 
 TEST_F(EvalCommand, ScalesAndMasks) {
-  Image<std::uint8_t> scaled(4, 2);
-  scaled.fill(40);
-  write_photograph(folder_ / "truth.png", {std::move(scaled)});
+  write_grey(folder_ / "truth.png", 4, 2, 40);
   EXPECT_EQ(results({map_, folder_ / "truth.png", "--scale", "4"}), results({map_, truth_}));
 
   Mask mask(4, 2);
@@ -68,12 +65,8 @@ TEST_F(EvalCommand, ScalesAndMasks) {
 }
 
 TEST_F(EvalCommand, ComparesViews) {
-  Image<std::uint8_t> a(20, 15);
-  a.fill(100);
-  Image<std::uint8_t> b(20, 15);
-  b.fill(110);
-  write_photograph(folder_ / "a.png", {std::move(a)});
-  write_photograph(folder_ / "b.png", {std::move(b)});
+  write_grey(folder_ / "a.png", 20, 15, 100);
+  write_grey(folder_ / "b.png", 20, 15, 110);
   const auto scores = results({"--views", folder_ / "a.png", folder_ / "b.png"});
   EXPECT_NEAR(scores["psnr_db"], 20 * std::log10(25.5), 1e-9);
   EXPECT_EQ(scores["mean_absolute_difference"], 10);

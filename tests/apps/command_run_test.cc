@@ -90,9 +90,8 @@ TEST_F(RunCommand, QuietIsQuietInTheSurveyToo) {
 TEST_F(RunCommand, FilesDoNotDependOnExecutionNorFramesInFlight) {
   const Words outputs = {
       "--save", "disparity,preview,views", "--view", "0.25", "--view", "1.5", "--format", "png"};
-  const auto run_with = [&](const std::string& out, Words more) {
-    more.insert(more.end(), outputs.begin(), outputs.end());
-    succeeds(run(out, more));
+  const auto run_with = [&](const std::string& out, const Words& more) {
+    succeeds(run(out, joined(more, outputs)));
     return made_in(out);
   };
   const std::string expected = folder_ / "expected";
@@ -145,8 +144,7 @@ TEST_F(RunCommand, StopsAtTheFirstBadFrame) {
     const std::string out = folder_ / executor;
     const ProcessResult result =
         run(out, {"--executor", executor, "--threads", "3", "--in-flight", "4"});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(last_line(result), StartsWith("vantage run: frame 3 ("));
+    expect_failure(result, 1, "\nvantage run: frame 3 (");
     EXPECT_THAT(last_line(result), HasSubstr("frame3.png"));
     EXPECT_THAT(made_in(out), ElementsAre("disparity/000000.pfm", "disparity/000001.pfm",
                                           "disparity/000002.pfm"));
@@ -268,11 +266,8 @@ TEST_F(InputRunCommand, BadSourcesAreOneLineAndExit1) {
 
 TEST_F(InputRunCommand, EveryKindOfInputGivesTheSame) {
   const Words outputs = words("--save disparity,views --view 0.5 --quiet --disparities=0:9 -o");
-  const auto made_from = [&](Words input, const std::string& out) {
-    input.insert(input.begin(), "run");
-    input.insert(input.end(), outputs.begin(), outputs.end());
-    input.push_back(folder_ / out);
-    succeeds(run_vantage(input));
+  const auto made_from = [&](const Words& input, const std::string& out) {
+    succeeds(run_vantage(joined(joined({"run"}, input), joined(outputs, {folder_ / out}))));
     return results_in(folder_ / out);
   };
   const auto expected = made_from({"--left", left_, "--right", right_}, "two");
@@ -356,9 +351,7 @@ TEST_F(InputRunCommand, JobFilesHoldEverything) {
   const Words more = words(
       "--save preview,views,stereo --view 0.25 --view-path 0=0,5=1 --video stereo --fps "
       "12.5 --frames 1-4 --iterations 2 --memory 2G --keep-going --no-sound");
-  Words printed = arguments(folder_ / "job", more);
-  printed.push_back("--print-config");
-  const ProcessResult config = succeeds(run_vantage(printed));
+  const ProcessResult config = succeeds(run(folder_ / "job", joined(more, {"--print-config"})));
   write_file(folder_ / "job.toml", config.out);
   const ProcessResult again = run_vantage({"run", folder_ / "job.toml", "--print-config"});
   EXPECT_EQ(again.out, config.out);

@@ -272,9 +272,7 @@ TEST_F(SceneCommand, RefusesHandHeldCamerasUnlessForced) {
   EXPECT_TRUE(fs::is_empty(place_ + "/maps"));
   EXPECT_THAT(view({"--at", "0.5,0", "-o", folder_ / "v.png"}).err,
               HasSubstr("1 of 1 edges are not matched yet"));
-  Words forced = turned;
-  forced.emplace_back("--no-rectification-check");
-  succeeds(build(forced));
+  succeeds(build(joined(turned, {"--no-rectification-check"})));
 
   // What the message suggests.
   fs::remove_all(place_);

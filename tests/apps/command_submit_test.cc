@@ -39,10 +39,8 @@ class SubmitCommand : public DotFramesTest {
             "--chunk-frames", "2"};
   }
   [[nodiscard]] ProcessResult submit(const std::string& out, const Words& more = {}) const {
-    Words arguments = run_options(out);
-    arguments.insert(arguments.begin(), {"submit", "--engine", "slurm", "--shards", "3"});
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_vantage(arguments);
+    const Words submit = words("submit --engine slurm --shards 3");
+    return run_vantage(joined(joined(submit, run_options(out)), more));
   }
   static std::string slurm(const std::string& out, const std::string& file) {
     return out + "/.vantage/slurm/" + file;
@@ -221,9 +219,7 @@ TEST_F(InputSubmitCommand, WrongUsageIsOneLineAndExit2) {
 
 TEST_F(SubmitCommand, TheFolderOfAnotherRunIsRefused) {
   const std::string out = folder_ / "out";
-  Words run = run_options(out);
-  run.insert(run.begin(), {"run", "--quiet"});
-  succeeds(run_vantage(run));
+  succeeds(run_vantage(joined({"run", "--quiet"}, run_options(out))));
   succeeds(submit(out));
   expect_one_line(submit(out, {"--iterations", "2"}), 1, "submit", "iterations");
   succeeds(submit(out, {"--iterations", "2", "--overwrite"}));
@@ -235,9 +231,7 @@ TEST_F(SubmitCommand, TheFolderOfAnotherRunIsRefused) {
 TEST_F(SubmitCommand, TasksMakeTheShardsOfTheRun) {
   const std::string out = folder_ / "out";
   const std::string whole = folder_ / "whole";
-  Words run = run_options(whole);
-  run.insert(run.begin(), {"run", "--quiet"});
-  succeeds(run_vantage(run));
+  succeeds(run_vantage(joined({"run", "--quiet"}, run_options(whole))));
   succeeds(submit(out));
   for (const std::string task : {"3", "1", "2"}) {
     EXPECT_EQ(shell("SLURM_ARRAY_JOB_ID=41 SLURM_ARRAY_TASK_ID=" + task + " bash '" +

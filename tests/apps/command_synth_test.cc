@@ -20,9 +20,8 @@ class SynthCommand : public PairTest {
   [[nodiscard]] ProcessResult synth(const Words& more) const {
     return run_vantage(joined({"synth", left_, right_, "--quiet"}, more));
   }
-  [[nodiscard]] ProcessResult synth_from_maps(Words more) const {
-    more.insert(more.end(), {"--left-disparity", left_map_, "--right-disparity", right_map_});
-    return synth(more);
+  [[nodiscard]] ProcessResult synth_from_maps(const Words& more) const {
+    return synth(joined(more, {"--left-disparity", left_map_, "--right-disparity", right_map_}));
   }
 
   std::string left_map_ = folder_ / "left.pfm";
@@ -48,9 +47,8 @@ TEST_F(SynthCommand, TheViewAtACameraIsItsImage) {
 
 TEST_F(SynthCommand, SeveralViewsNeedAPattern) {
   const Words views = {"--view", "0.25", "--view", "-0.5", "--view=0.75,0"};
-  Words arguments = joined(views, {"-o", outputs_ + "/v%02d.png", "--hole-mask",
-                                   outputs_ + "/m%d.png", "--report", folder_ / "r.json"});
-  succeeds(synth_from_maps(arguments));
+  succeeds(synth_from_maps(joined(views, {"-o", outputs_ + "/v%02d.png", "--hole-mask",
+                                          outputs_ + "/m%d.png", "--report", folder_ / "r.json"})));
   EXPECT_THAT(files_below(outputs_),
               ElementsAre("m0.png", "m1.png", "m2.png", "v00.png", "v01.png", "v02.png"));
   const auto report = read_json(folder_ / "r.json");
@@ -61,9 +59,7 @@ TEST_F(SynthCommand, SeveralViewsNeedAPattern) {
   EXPECT_EQ(report["results"]["views"][0]["intensity"], report["results"]["views"][2]["intensity"]);
   EXPECT_TRUE(report["plan"].is_null());  // the maps were given
 
-  arguments = views;
-  arguments.insert(arguments.end(), {"-o", outputs_ + "/plain.png"});
-  expect_one_line(synth_from_maps(arguments), 2, "synth",
+  expect_one_line(synth_from_maps(joined(views, {"-o", outputs_ + "/plain.png"})), 2, "synth",
                   "expected a pattern such as views/%03d.png");
 }
 

@@ -21,12 +21,9 @@ class TuneTest : public PairTest {
     return run(with_method(arguments, more));
   }
   /// With `more`, and with SSD unless that names a method.
-  static Words with_method(Words arguments, const Words& more) {
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    if (std::ranges::find(more, "--method") == more.end()) {
-      arguments.insert(arguments.end(), {"--method", "ssd"});
-    }
-    return arguments;
+  static Words with_method(const Words& arguments, const Words& more) {
+    const bool has_method = std::ranges::find(more, "--method") != more.end();
+    return joined(joined(arguments, more), has_method ? Words{} : Words{"--method", "ssd"});
   }
   [[nodiscard]] nlohmann::json report() const { return read_json(report_); }
 

@@ -166,9 +166,7 @@ TEST_F(InputMatchOptions, AFileOrAPrintedConfigIsLookedAtLikeTheCommandLine) {
   // A printed file names every setting; only what differs from its default is the user's.
   const Words synth = {"synth",           left_,    right_, "-o",
                        folder_ / "v.png", "--view", "0.5",  "--disparities=0:9"};
-  auto printed = synth;
-  printed.emplace_back("--print-config");
-  write_file(folder_ / "synth.toml", run_vantage(printed).out);
+  write_file(folder_ / "synth.toml", run_vantage(joined(synth, {"--print-config"})).out);
   result = succeeds(run_vantage({"synth", "--config", folder_ / "synth.toml"}));
   for (const auto& [line, says] :
        {std::pair("fps = '30'\n", "--fps has no effect without an output that ends in .mp4"),
@@ -436,16 +434,14 @@ TEST_F(MatchCommandOptions, RunAndSynthTakeThem) {
   fs::copy_file(right_, folder_ / "r/0.png");
   const Words run = {"run",         "--left", folder_ / "l",   "--right",
                      folder_ / "r", "-o",     folder_ / "out", "--disparities=0:9"};
-  Words arguments = joined(run, {"--method", "gradient", "--save", "disparity,confidence"});
+  const Words arguments = joined(run, {"--method", "gradient", "--save", "disparity,confidence"});
   result = succeeds(run_vantage(arguments));
   EXPECT_TRUE(fs::exists(folder_ / "out/disparity/000000.pfm"));
   succeeds(match(folder_ / "a.pfm", {"--method", "gradient", "--confidence", folder_ / "c.pfm"}));
   EXPECT_EQ(read_file(folder_ / "out/confidence/000000.pfm"), read_file(folder_ / "c.pfm"));
-  arguments.insert(arguments.end(), {"--format", "png"});
-  expect_failure(run_vantage(arguments), 2, "format is png, which holds no floats");
-  arguments = run;
-  arguments.insert(arguments.end(), {"--disparities-y", "0:1"});
-  EXPECT_EQ(run_vantage(arguments).exit_code, 2);
+  expect_failure(run_vantage(joined(arguments, {"--format", "png"})), 2,
+                 "format is png, which holds no floats");
+  EXPECT_EQ(run_vantage(joined(run, {"--disparities-y", "0:1"})).exit_code, 2);
 }
 
 }  // namespace vantage::match_options_test

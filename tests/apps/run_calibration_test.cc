@@ -1,7 +1,6 @@
 // Runs that rectify their pairs first.
 
 #include <array>
-#include <fstream>
 
 #include "engine/image/stereo_packing.h"
 #include "engine/rectification/rectifier.h"
@@ -11,19 +10,9 @@ namespace vantage::run_calibration_test {
 
 constexpr int kFrame = 3;
 
-/// Cameras of the size of the frames, turned and distorting.
-constexpr const char* kRig = R"(%YAML:1.0
-M1: [60, 0, 31, 0, 60, 24, 0, 0, 1]
-D1: [-0.2, 0.05, 0.001, -0.002]
-M2: [61, 0, 32, 0, 61, 23, 0, 0, 1]
-D2: [0.1, -0.02, 0.001, 0.001]
-R: [1, 0, 0, 0, 0.99920011, -0.03998933, 0, 0.03998933, 0.99920011]
-T: [-1, 0.02, 0.01]
-)";
-
 class RunCalibration : public RunTest {
  protected:
-  void SetUp() override { std::ofstream(rig_) << kRig; }
+  void SetUp() override { write_file(rig_, kTurnedRig); }
 
   [[nodiscard]] Words with_rig(const Words& more) const {
     return joined({"--calibration", rig_}, more);

@@ -44,6 +44,16 @@ class RunTest : public testing::Test {
   std::string right_ = folder_ / "right";
 };
 
+/// Cameras of the size of the frames, turned and distorting, as OpenCV stores them.
+inline constexpr const char* kTurnedRig = R"(%YAML:1.0
+M1: [60, 0, 31, 0, 60, 24, 0, 0, 1]
+D1: [-0.2, 0.05, 0.001, -0.002]
+M2: [61, 0, 32, 0, 61, 23, 0, 0, 1]
+D2: [0.1, -0.02, 0.001, 0.001]
+R: [1, 0, 0, 0, 0.99920011, -0.03998933, 0, 0.03998933, 0.99920011]
+T: [-1, 0.02, 0.01]
+)";
+
 /// Two videos in segments of five frames, and a map per frame.
 inline const Words kVideoOutputs =
     words("--save disparity,preview,views --view 0.5 --video preview,views --chunk-frames 5");

@@ -1,27 +1,16 @@
 // New views of photographs that are not rectified: colours come from the photographs themselves.
 
 #include <array>
-#include <fstream>
 
 #include "engine/rectification/rectifier.h"
 #include "tests/apps/run_fixture.h"
 
 namespace vantage::unrectified_views_test {
 
-/// Cameras of the size of the frames, turned and distorting.
-constexpr const char* kRig = R"(%YAML:1.0
-M1: [60, 0, 31, 0, 60, 24, 0, 0, 1]
-D1: [-0.2, 0.05, 0.001, -0.002]
-M2: [61, 0, 32, 0, 61, 23, 0, 0, 1]
-D2: [0.1, -0.02, 0.001, 0.001]
-R: [1, 0, 0, 0, 0.99920011, -0.03998933, 0, 0.03998933, 0.99920011]
-T: [-1, 0.02, 0.01]
-)";
-
 class UnrectifiedViews : public RunTest {
  protected:
   void SetUp() override {
-    std::ofstream(rig_) << kRig;
+    write_file(rig_, kTurnedRig);
     DisparityMap map(kWidth, kHeight);
     map.fill(3);  // so that half-way between the cameras is between pixels
     write_disparity(map_, map.view());
