@@ -19,6 +19,7 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/npy.h"
+#include "engine/options/match_settings.h"
 #include "engine/options/parameter_settings.h"
 #include "engine/options/settings.h"
 #include "engine/plot/drawing.h"
