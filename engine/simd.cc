@@ -44,6 +44,11 @@ std::vector<std::string> available_instruction_sets() {
 }
 
 void force_instruction_set(const std::string& name) {
+  if (kernels::available_targets() == 0) {
+    throw Error(
+        fmt::format("this processor has no instruction set that this build needs, expected {}",
+                    built_instruction_sets().back()));
+  }
   long long chosen = 0;
   for_each_target(kernels::available_targets(), [&](long long target) {
     if (same_name(kernels::target_name(target), name)) {

@@ -16,9 +16,6 @@
 #include "kernels/pixel_row/pixel_row.h"
 #include "kernels/simd-inl.h"
 
-// A single lane cannot hold the taps.
-#if HWY_TARGET != HWY_SCALAR
-
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
@@ -138,7 +135,5 @@ HWY_INLINE hn::VFromD<hn::FixedTag<float, 4>> sum_along_colour(const TapSums& su
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#endif  // HWY_TARGET != HWY_SCALAR
 
 #endif  // VANTAGE_KERNELS_BICUBIC_TAPS_INL_H_

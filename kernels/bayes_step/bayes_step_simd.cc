@@ -20,16 +20,12 @@ HWY_INLINE FloatVec half_weight(const StarColumns<float>& at, int lane) {
   const FloatVec product =
       hn::Mul(hn::Mul(hn::Mul(load(at.up), load(at.down)), hn::Mul(load(at.left), load(at.right))),
               load(at.centre));
-#if HWY_TARGET == HWY_SCALAR
-  return hn::Mul(load(at.source), hn::Sqrt(product));
-#else
   // One Newton step on the estimate y of 1/sqrt(x): 2 sqrt(x) = (x·y) (3 − (x·y)·y). This takes 5
   // cycles per vector; a square root takes 10 to 12.
   const FloatVec estimate = hn::ApproximateReciprocalSqrt(product);
   const FloatVec root = hn::Mul(product, estimate);
   const FloatVec correction = hn::NegMulAdd(root, estimate, hn::Set(df, 3.0F));
   return hn::Mul(hn::Mul(load(at.source), root), correction);
-#endif
 }
 
 // Columns of kBlocks · 16 lanes whose prior has one tap: everything stays in registers.

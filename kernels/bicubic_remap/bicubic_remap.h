@@ -23,13 +23,9 @@ struct RemapRow {
 /// of the nearest pixel inside. Positions more than half a pixel outside, or NaN, give 0 in all
 /// channels. Integers are rounded to nearest and clamped to their range; floats are clamped to
 /// 0..1, or to the range of the taps where that is wider. `result` has count · channels values and
-/// must not overlap the image. Identical on every instruction set and to the reference.
+/// must not overlap the image. Identical on every instruction set.
 void remap_bicubic_row(const RemapRow<std::uint8_t>& row, std::uint8_t* result);
 void remap_bicubic_row(const RemapRow<std::uint16_t>& row, std::uint16_t* result);
 void remap_bicubic_row(const RemapRow<float>& row, float* result);
-
-void remap_bicubic_row_ref(const RemapRow<std::uint8_t>& row, std::uint8_t* result);
-void remap_bicubic_row_ref(const RemapRow<std::uint16_t>& row, std::uint16_t* result);
-void remap_bicubic_row_ref(const RemapRow<float>& row, float* result);
 
 }  // namespace vantage::kernels

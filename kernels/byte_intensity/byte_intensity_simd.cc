@@ -22,7 +22,6 @@ void rounded(const float* intensities, int width, std::uint8_t* rounded) {
 
 void halved(const std::uint8_t* upper, const std::uint8_t* lower, int width, std::uint8_t* halved) {
   int x = 0;
-#if HWY_TARGET != HWY_SCALAR
   const hn::ScalableTag<std::uint8_t> d8;
   const hn::Repartition<std::uint16_t, decltype(d8)> d16;
   const hn::Rebind<std::uint8_t, decltype(d16)> half;
@@ -38,7 +37,6 @@ void halved(const std::uint8_t* upper, const std::uint8_t* lower, int width, std
     hn::StoreU(hn::DemoteTo(half, hn::BitCast(hn::RebindToSigned<decltype(d16)>(), mean)), half,
                halved + x);
   }
-#endif
   halved_intensity_row_ref(upper + 2 * x, lower + 2 * x, width - 2 * x, halved + x);
 }
 

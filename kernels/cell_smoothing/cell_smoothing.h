@@ -20,7 +20,6 @@ struct SymmetricSum {
   int count = 0;  ///< cells per run, a multiple of kLaneMultiple
 };
 void symmetric_sum(const SymmetricSum& sum, float* output);
-void symmetric_sum_ref(const SymmetricSum& sum, float* output);
 
 /// Wells' cascade of box filters of widths 3, 3, 3 and 5 (variance 4) in y and x in one pass: the
 /// composite kernel over the rows, then box after box along the row, in registers. Normalised.
@@ -43,6 +42,5 @@ struct BoxCascade {
 /// Computes one row. `work`: room for the cells of the input columns; `output`: first cell of
 /// output_begin.
 void box_cascade_row(const BoxCascade& cascade, float* work, float* output);
-void box_cascade_row_ref(const BoxCascade& cascade, float* output);
 
 }  // namespace vantage::kernels

@@ -63,9 +63,4 @@ void cell_entropy_row(const CellRow& row, const float* best, float scale, float*
 /// set. Input and output may be the same memory.
 void probability_energy_row(const float* probability, int columns, float* energy);
 
-/// Scalar reference.
-void select_cell_winners_row_ref(const CellRow& row, const CellWinners& outputs);
-void cell_entropy_row_ref(const CellRow& row, const float* best, float scale, float* entropy);
-void probability_energy_row_ref(const float* probability, int columns, float* energy);
-
 }  // namespace vantage::kernels

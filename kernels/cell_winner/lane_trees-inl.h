@@ -29,22 +29,8 @@ struct Minimum {
 
 // Every second lane of `low` followed by `high`, starting at the first lane (even) or the second
 // (odd).
-HWY_INLINE VecF even_lanes(VecF low, VecF high) {
-#if HWY_TARGET == HWY_SCALAR
-  (void)high;
-  return low;
-#else
-  return hn::ConcatEven(TagF(), high, low);
-#endif
-}
-HWY_INLINE VecF odd_lanes(VecF low, VecF high) {
-#if HWY_TARGET == HWY_SCALAR
-  (void)low;
-  return high;
-#else
-  return hn::ConcatOdd(TagF(), high, low);
-#endif
-}
+HWY_INLINE VecF even_lanes(VecF low, VecF high) { return hn::ConcatEven(TagF(), high, low); }
+HWY_INLINE VecF odd_lanes(VecF low, VecF high) { return hn::ConcatOdd(TagF(), high, low); }
 
 // Joins neighbours among kCount vectors of values until one vector is left. `values` holds kCount
 // values for each of kStep columns, column by column; lane k of the result is the result of column

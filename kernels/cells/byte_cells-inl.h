@@ -12,7 +12,6 @@
 
 #include "kernels/simd-inl.h"
 
-#if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
@@ -68,6 +67,5 @@ HWY_INLINE VecOf<D8> bits_of_bytes(D8 d, VecOf<D8> bytes) {
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif
 
 #endif

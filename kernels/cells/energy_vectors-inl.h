@@ -13,7 +13,6 @@
 #include "kernels/cells/fixed_energy.h"
 #include "kernels/simd-inl.h"
 
-#if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
@@ -41,6 +40,5 @@ HWY_INLINE Vec min_of_lanes(Vec energies) {
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif
 
 #endif

@@ -42,7 +42,6 @@ HWY_INLINE FloatVec fold_lanes(LaneBlock16 block, Operation operation) {
     }
   }
   FloatVec all = block.part[0];
-#if HWY_TARGET != HWY_SCALAR
   if constexpr (kFloatLanes >= 16) {
     all = operation(all, hn::ConcatLowerUpper(FloatTag(), all, all));
   }
@@ -51,7 +50,6 @@ HWY_INLINE FloatVec fold_lanes(LaneBlock16 block, Operation operation) {
   }
   all = operation(all, hn::Shuffle1032(all));
   all = operation(all, hn::Shuffle2301(all));
-#endif
   return all;
 }
 

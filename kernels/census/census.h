@@ -21,8 +21,6 @@ using CensusRows = std::array<const float*, 2 * kCensusRadiusY + 1>;
 /// after the next multiple of kLaneMultiple; codes are written up to that multiple.
 void census_code_row(const CensusRows& rows, int width, std::uint32_t* first_half,
                      std::uint32_t* second_half);
-void census_code_row_ref(const CensusRows& rows, int width, std::uint32_t* first_half,
-                         std::uint32_t* second_half);
 
 /// Neighbours of ray census codes: 1 to 4 px up, down, left and right, 1 and 2 px along diagonals.
 /// Most are near the centre, where windows do not reach across edges; a few are farther, for coarse
@@ -67,15 +65,11 @@ using RayCensusCodes = std::array<std::uint8_t*, kMaxRayCensusBytes>;
 /// kLaneMultiple; codes are written up to that multiple. thresholds: 1 or 3.
 void ray_census_code_row(const RayCensusRows& rows, int width, int thresholds,
                          const RayCensusCodes& codes);
-void ray_census_code_row_ref(const RayCensusRows& rows, int width, int thresholds,
-                             const RayCensusCodes& codes);
 
 /// As ray_census_code_row() with one threshold, of bytes.
 using ByteRayCensusRows = std::array<const std::uint8_t*, 2 * kRayCensusRadius + 1>;
 void byte_ray_census_code_row(const ByteRayCensusRows& rows, int width,
                               const RayCensusCodes& codes);
-void byte_ray_census_code_row_ref(const ByteRayCensusRows& rows, int width,
-                                  const RayCensusCodes& codes);
 
 /// Planes: the two halves of census codes.
 using CensusPairs = FeaturePairs<std::uint32_t, 2>;
@@ -87,6 +81,5 @@ struct RayCensusPairs : FeaturePairs<std::uint8_t, kMaxRayCensusBytes> {
 /// Hamming distances of codes, 0..62; with three channels their mean. Writes columns × lanes
 /// floats. Identical on every instruction set. Ray codes: kernels/ray_census.
 void hamming_row(const CensusPairs& row, float* cells);
-void hamming_row_ref(const CensusPairs& row, float* cells);
 
 }  // namespace vantage::kernels

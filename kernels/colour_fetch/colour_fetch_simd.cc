@@ -8,11 +8,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-#if HWY_TARGET == HWY_SCALAR
-// HWY_SCALAR has no four-lane vector to hold a pixel.
-static constexpr auto& fetch_bicubic = fetch_bicubic_row_ref;
-#else
-
 // Positions whose columns and weights are computed at a time; a multiple of every vector length.
 constexpr int kBlock = 64;
 
@@ -345,7 +340,6 @@ void fetch_bicubic(const BicubicFetchRow& row, float* colours) {
     row.is_in_range ? fetch_any<4, true>(row, colours) : fetch_any<4, false>(row, colours);
   }
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -30,8 +30,6 @@ struct ColumnSsdPairs {
 /// sums[j · lanes + i] = previous[…] + entering² − leaving². Exact modulo 2³². `previous` may be
 /// the same row as `sums`. Identical on every instruction set.
 void column_ssd_row(const ColumnSsdPairs& row, const std::int32_t* previous, std::int32_t* sums);
-void column_ssd_row_ref(const ColumnSsdPairs& row, const std::int32_t* previous,
-                        std::int32_t* sums);
 
 /// Upper limit (exclusive) of squared float differences.
 inline constexpr float kFloatSquareLimit = 4194304.0F;  // 2²²
@@ -49,7 +47,5 @@ struct ColumnSsdFloat {
 };
 
 void column_ssd_row(const ColumnSsdFloat& row, const std::int32_t* previous, std::int32_t* sums);
-void column_ssd_row_ref(const ColumnSsdFloat& row, const std::int32_t* previous,
-                        std::int32_t* sums);
 
 }  // namespace vantage::kernels

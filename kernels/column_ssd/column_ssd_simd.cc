@@ -28,14 +28,6 @@ void interleave(const std::uint8_t* entering, const std::uint8_t* leaving, int s
 }
 
 // sum + entering² − leaving², where the 16-bit halves of a − b are (entering, leaving).
-#if HWY_TARGET == HWY_SCALAR
-HWY_INLINE Vec32 add_change(Vec32 a, Vec32 b, Vec32 sum) {
-  const auto low = [](Vec32 v) { return hn::ShiftRight<16>(hn::ShiftLeft<16>(v)); };
-  const Vec32 entering = hn::Sub(low(a), low(b));
-  const Vec32 leaving = hn::Sub(hn::ShiftRight<16>(a), hn::ShiftRight<16>(b));
-  return hn::Sub(hn::Add(sum, hn::Mul(entering, entering)), hn::Mul(leaving, leaving));
-}
-#else
 HWY_INLINE Vec32 add_change(Vec32 a, Vec32 b, Vec32 sum) {
   const Tag32 d32;
   const hn::Repartition<std::int16_t, Tag32> d16;
@@ -47,7 +39,6 @@ HWY_INLINE Vec32 add_change(Vec32 a, Vec32 b, Vec32 sum) {
   sum = hn::ReorderWidenMulAccumulate(d32, difference, hn::Mul(difference, signs), sum, odd_sum);
   return hn::RearrangeToOddPlusEven(sum, odd_sum);
 }
-#endif
 
 // Processes kVectors neighbouring vectors of lanes over all columns.
 template <int kVectors>
@@ -174,56 +165,6 @@ void column_ssd_row(const ColumnSsdPairs& row, const std::int32_t* previous, std
 }
 void column_ssd_row(const ColumnSsdFloat& row, const std::int32_t* previous, std::int32_t* sums) {
   HWY_DYNAMIC_DISPATCH(column_ssd_float)(row, previous, sums);
-}
-
-// Scalar reference.
-
-namespace {
-
-int low_half(std::int32_t pair) { return static_cast<std::int16_t>(pair & 0xFFFF); }
-int high_half(std::int32_t pair) { return static_cast<std::int16_t>(pair >> 16); }
-
-std::int32_t rounded_square(const float* reference, const float* partner, int j, int k) {
-  if (reference == nullptr) {
-    return 0;
-  }
-  const float difference = reference[j] - partner[k];
-  return static_cast<std::int32_t>(std::lrint(difference * difference));
-}
-
-// Modulo 2³²: the entering row may carry a sum past 2³¹ before the leaving one is subtracted.
-std::int32_t changed(std::int32_t sum, std::int32_t enters, std::int32_t leaves) {
-  return static_cast<std::int32_t>(static_cast<std::uint32_t>(sum) +
-                                   static_cast<std::uint32_t>(enters) -
-                                   static_cast<std::uint32_t>(leaves));
-}
-
-}  // namespace
-
-void column_ssd_row_ref(const ColumnSsdPairs& row, const std::int32_t* previous,
-                        std::int32_t* sums) {
-  for (int j = 0; j < row.columns; ++j) {
-    for (int i = 0; i < row.lanes; ++i) {
-      const int k = j * row.partner_step + i;
-      const int entering = low_half(row.reference[j]) - low_half(row.partner[k]);
-      const int leaving = high_half(row.reference[j]) - high_half(row.partner[k]);
-      const int cell = j * row.lanes + i;
-      sums[cell] = changed(previous[cell], entering * entering, leaving * leaving);
-    }
-  }
-}
-
-void column_ssd_row_ref(const ColumnSsdFloat& row, const std::int32_t* previous,
-                        std::int32_t* sums) {
-  for (int j = 0; j < row.columns; ++j) {
-    for (int i = 0; i < row.lanes; ++i) {
-      const int k = j * row.partner_step + i;
-      const int cell = j * row.lanes + i;
-      sums[cell] = changed(previous[cell],
-                           rounded_square(row.reference_entering, row.partner_entering, j, k),
-                           rounded_square(row.reference_leaving, row.partner_leaving, j, k));
-    }
-  }
 }
 
 }  // namespace vantage::kernels

@@ -21,6 +21,5 @@ struct ColumnSum {
 /// sums[i] = previous[i] + q(entering[i]) − q(leaving[i]). Exact modulo 2³². `previous` may be the
 /// same row as `sums`. Identical on every instruction set.
 void column_sum_row(const ColumnSum& row, const std::int32_t* previous, std::int32_t* sums);
-void column_sum_row_ref(const ColumnSum& row, const std::int32_t* previous, std::int32_t* sums);
 
 }  // namespace vantage::kernels

@@ -83,7 +83,5 @@ struct CombinedRow {
 /// finite and likelihoods are 0.
 void combined_row(const CombinedRow& row, const CombinedModel& model, CombinedCells meaning,
                   float* cells);
-void combined_row_ref(const CombinedRow& row, const CombinedModel& model, CombinedCells meaning,
-                      float* cells);
 
 }  // namespace vantage::kernels

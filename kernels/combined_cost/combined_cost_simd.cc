@@ -10,10 +10,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-static constexpr auto& combined = combined_row_ref;
-#else
-
 // Steps of two vectors of residuals, in grouped order.
 template <class D8>
 HWY_INLINE VecOf<D8> residual_steps(D8 d, VecOf<Tag16<D8> > first, VecOf<Tag16<D8> > second,
@@ -279,7 +275,6 @@ void combined(const CombinedRow& row, const CombinedModel& model, CombinedCells 
     std::fill(cells + row.levels.count, cells + row.levels.lanes, 0.0F);
   }
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

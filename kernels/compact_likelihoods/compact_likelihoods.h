@@ -27,7 +27,6 @@ inline constexpr float kMinReducedLikelihood = 4.656612873077393e-10F;
 /// least as large as any candidate.
 void reduce_likelihoods_row(const BlockRow<float>& row, float weight, float* work,
                             std::uint8_t* energies);
-void reduce_likelihoods_row_ref(const BlockRow<float>& row, float weight, std::uint8_t* energies);
 
 /// Weights of compact energies are multiples of 1/this.
 inline constexpr int kCompactWeightUnits = 16384;
@@ -36,15 +35,12 @@ inline constexpr int kCompactWeightUnits = 16384;
 /// lanes at least as large as the last candidate, before and after.
 void reduce_compact_energies_row(const BlockRow<std::uint8_t>& row, float weight,
                                  std::uint16_t* work, std::uint8_t* energies);
-void reduce_compact_energies_row_ref(const BlockRow<std::uint8_t>& row, float weight,
-                                     std::uint8_t* energies);
 
 /// Lets the surface of a column slant: every energy becomes the smallest of itself and of those of
 /// the adjacent candidates plus `penalty`. Of all `columns` · `lanes` cells, `lanes` per column, a
 /// multiple of kLaneMultiple. Lanes that are not candidates must be at least as large as the last
 /// candidate, and remain so.
 void allow_slant_row(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty);
-void allow_slant_row_ref(std::uint8_t* energies, int columns, int lanes, std::uint8_t penalty);
 
 /// Compact cells, `lanes` per column.
 struct CompactRow {
@@ -56,13 +52,10 @@ struct CompactRow {
 
 /// Likelihoods exp(−energy); 0 in lanes that are not candidates.
 void likelihoods_of_compact_row(const CompactRow& row, float* likelihoods);
-void likelihoods_of_compact_row_ref(const CompactRow& row, float* likelihoods);
 /// Same for probabilities; they no longer sum to 1.
 void probabilities_of_compact_row(const CompactRow& row, float* probabilities);
-void probabilities_of_compact_row_ref(const CompactRow& row, float* probabilities);
 
 /// Probabilities in [0, 1]. cells: a multiple of kLaneMultiple.
 void compact_probabilities_row(const float* probabilities, int cells, std::uint8_t* compact);
-void compact_probabilities_row_ref(const float* probabilities, int cells, std::uint8_t* compact);
 
 }  // namespace vantage::kernels

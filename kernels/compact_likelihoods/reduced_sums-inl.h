@@ -15,7 +15,6 @@
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 #include "kernels/simd-inl.h"
 
-#if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
@@ -72,6 +71,5 @@ HWY_INLINE void weigh_sums(const std::uint16_t* sums, int lanes, std::uint16_t b
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif
 
 #endif

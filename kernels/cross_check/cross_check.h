@@ -27,12 +27,10 @@ struct CoarseWinnerRow {
 /// unmatched[x] = 255 if own_px[x] is unknown (NaN), if the partner column floor(x + s + ½) with
 /// s = direction · columns_per_px · d, rounded to float, is outside the row, if the other map is
 /// unknown there, or if |own − other| ≥ tolerance_px; otherwise 0. other_px: `width` values. All
-/// else is exact, so identical on every instruction set and to the reference.
+/// else is exact, so identical on every instruction set.
 void cross_check_row(const CrossCheckRow& row, const float* other_px);
-void cross_check_row_ref(const CrossCheckRow& row, const float* other_px);
 
 /// The same against winners of a coarse level.
 void cross_check_winners_row(const CrossCheckRow& row, const CoarseWinnerRow& other);
-void cross_check_winners_row_ref(const CrossCheckRow& row, const CoarseWinnerRow& other);
 
 }  // namespace vantage::kernels

@@ -19,7 +19,4 @@ struct DiffusionRow {
 
 void diffusion_row(const DiffusionRow& row);
 
-/// Scalar reference.
-void diffusion_row_ref(const DiffusionRow& row);
-
 }  // namespace vantage::kernels

@@ -55,7 +55,6 @@ struct DisparityPriorRow {
 /// are changed; non-candidate lanes must be finite and count neither for the mean nor for the
 /// minimum.
 void energies_with_prior_row(const DisparityPriorRow& row, float* cells);
-void energies_with_prior_row_ref(const DisparityPriorRow& row, float* cells);
 
 /// Exponent (base 2) of the prior's likelihood at two pixels and beyond. Clamped where products
 /// with the smallest likelihoods would no longer be normal floats.
@@ -66,6 +65,5 @@ inline float prior_exponent_scale(float weight) {
 
 /// Likelihoods: p *= exp(−w · min(k²/4, 1)), w = weight, at most 20 log 2.
 void likelihoods_with_prior_row(const DisparityPriorRow& row, float* cells);
-void likelihoods_with_prior_row_ref(const DisparityPriorRow& row, float* cells);
 
 }  // namespace vantage::kernels

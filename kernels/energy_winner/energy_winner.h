@@ -36,7 +36,6 @@ struct EnergyRow {
 /// winners[j]: the candidate with the minimum energy, the smallest on ties; kNoWinner where none
 /// may win. least[j]: its energy; kMaxEnergy where none may win.
 void select_energy_winners_row(const EnergyRow& row, std::int32_t* winners, FixedEnergy* min);
-void select_energy_winners_row_ref(const EnergyRow& row, std::int32_t* winners, FixedEnergy* min);
 
 /// disparity_px[j] is the disparity of winners[j], NaN where there is none. refined: moved to the
 /// vertex of the parabola through the energies of the winner and its neighbours, EQUATIONS §3; not
@@ -57,7 +56,5 @@ struct EnergyColumnsRow {
 /// then added pairwise. Error below 1e-5, down to 2^−125, the smallest value returned.
 void energy_probability_row(const EnergyColumnsRow& row, const FixedEnergy* min,
                             float steps_per_nat, float* probability);
-void energy_probability_row_ref(const EnergyColumnsRow& row, const FixedEnergy* min,
-                                float steps_per_nat, float* probability);
 
 }  // namespace vantage::kernels

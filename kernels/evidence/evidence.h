@@ -20,13 +20,11 @@ struct GradientRowPlanes {
 /// Fills half_norm and multiplies x and y by α, in place. All three are read and written up to the
 /// first multiple of kLaneMultiple ≥ `width`. Identical on every instruction set.
 void evidence_planes_row(const GradientRowPlanes& row, float alpha, EvidenceNorm norm);
-void evidence_planes_row_ref(const GradientRowPlanes& row, float alpha, EvidenceNorm norm);
 
 /// Negated evidence for a match (5.5): α |gL − gR| − (|gL| + |gR|)/2, where |·| is the norm.
 /// With three channels: the mean. Writes columns × lanes floats. Identical on every
 /// instruction set.
 void negated_evidence_row(const GradientPairs& row, EvidenceNorm norm, float* cells);
-void negated_evidence_row_ref(const GradientPairs& row, EvidenceNorm norm, float* cells);
 
 /// Cells of negated evidence, geometry.lanes() per column.
 struct EvidenceRow {
@@ -41,6 +39,5 @@ inline constexpr double kMinEvidenceSigma = 1e-30;
 /// In place: (1−ε) exp((E − max E) / σ) + ε, with the maximum over the column's candidates with a
 /// partner; ε for those without, 0 in the lanes after them. σ in (0, ∞), ε in (0, 1).
 void likelihood_of_evidence(const EvidenceRow& row, float sigma, float epsilon, float* cells);
-void likelihood_of_evidence_ref(const EvidenceRow& row, float sigma, float epsilon, float* cells);
 
 }  // namespace vantage::kernels

@@ -31,9 +31,6 @@ struct EvidenceBlock {
 /// For blocks of up to some 10⁴ pixels. Identical on every instruction set.
 double evidence_sum(const EvidenceBlock& block);
 
-/// Scalar reference.
-double evidence_sum_ref(const EvidenceBlock& block);
-
 /// Adds the sums of kLaneMultiple lanes, neighbouring halves first.
 double pairwise_sum(const float* lanes);
 

@@ -54,7 +54,4 @@ const FilledMedianWeights& filled_median_weights();
 /// instruction set.
 void take_filled_medians_row(const FilledRow& row, float* filled_px);
 
-/// Scalar reference.
-void take_filled_medians_row_ref(const FilledRow& row, float* filled_px);
-
 }  // namespace vantage::kernels

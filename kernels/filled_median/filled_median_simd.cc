@@ -1,6 +1,7 @@
 #include "kernels/simd-inl.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,10 +11,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-// Scanning all samples in every round is worthwhile only with several lanes.
-static constexpr auto& take_filled_medians_simd = take_filled_medians_row_ref;
-#else
 using TagF = hn::ScalableTag<float>;
 using TagI = hn::ScalableTag<std::int32_t>;
 using Tag8 = hn::Repartition<std::uint8_t, TagI>;
@@ -252,7 +249,6 @@ void take_filled_medians_simd(const FilledRow& row, float* filled_px) {
     group.store(medians_px, taken, filled_px);
   }
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -263,6 +259,20 @@ HWY_EXPORT(take_filled_medians_simd);
 
 void take_filled_medians_row(const FilledRow& row, float* filled_px) {
   HWY_DYNAMIC_DISPATCH(take_filled_medians_simd)(row, filled_px);
+}
+
+static FilledMedianWeights make_weights() {
+  FilledMedianWeights weights{};
+  for (std::size_t sum = 0; sum < weights.size(); ++sum) {
+    weights[sum] = static_cast<std::int32_t>(
+        std::lround(kFilledUnitWeight * std::exp(-static_cast<double>(sum) / kFilledMedianLevels)));
+  }
+  return weights;
+}
+
+const FilledMedianWeights& filled_median_weights() {
+  static const FilledMedianWeights weights = make_weights();
+  return weights;
 }
 
 }  // namespace vantage::kernels

@@ -48,8 +48,6 @@ struct EnergyPitches {
 /// Fixed-point energies of byte energies; kMaxEnergy in lanes that are not candidates.
 void fixed_energies_of_bytes_row(const CompactRow& row, ByteSteps steps, FixedEnergy* energies,
                                  EnergyPitches pitches = {});
-void fixed_energies_of_bytes_row_ref(const CompactRow& row, ByteSteps steps, FixedEnergy* energies,
-                                     EnergyPitches pitches = {});
 
 /// Likelihoods in [0, 1], `lanes` per column.
 struct LikelihoodRow {
@@ -63,13 +61,9 @@ struct LikelihoodRow {
 /// above 0, at most 374.
 void fixed_energies_of_likelihoods_row(const LikelihoodRow& row, float steps_per_nat,
                                        FixedEnergy* energies, EnergyPitches pitches = {});
-void fixed_energies_of_likelihoods_row_ref(const LikelihoodRow& row, float steps_per_nat,
-                                           FixedEnergy* energies, EnergyPitches pitches = {});
 
 /// energy · bytes_per_step; halves round up, at most 255. cells: a multiple of kLaneMultiple.
 void bytes_of_fixed_energies_row(const FixedEnergy* energies, int cells, FixedWeight bytes_per_step,
                                  std::uint8_t* bytes);
-void bytes_of_fixed_energies_row_ref(const FixedEnergy* energies, int cells,
-                                     FixedWeight bytes_per_step, std::uint8_t* bytes);
 
 }  // namespace vantage::kernels

@@ -26,9 +26,7 @@ struct ForwardWarpRow {
 /// meets it is more than one column away, which rounding (half a column) cannot outweigh; two
 /// interpolated samples differ in d as they differ in column.
 /// Only the targets are computed in vectors: the scatter is ordered. Identical on every instruction
-/// set and to the reference.
+/// set.
 void forward_warp_row(const ForwardWarpRow& row, float* warped_disparity_px, float* source_column);
-void forward_warp_row_ref(const ForwardWarpRow& row, float* warped_disparity_px,
-                          float* source_column);
 
 }  // namespace vantage::kernels

@@ -23,6 +23,5 @@ struct SeparableFilter {
 /// written, up to the next multiple of kLaneMultiple after `width` plus the margin. `work`: room
 /// for width + 3 · kLaneMultiple floats. Identical on every instruction set.
 void separable_filter_row(const SeparableFilter& filter, float* work, float* filtered);
-void separable_filter_row_ref(const SeparableFilter& filter, float* work, float* filtered);
 
 }  // namespace vantage::kernels

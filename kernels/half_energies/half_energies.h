@@ -41,17 +41,13 @@ inline float of_half(std::uint16_t half) {
 
 /// halves = scale · energies. cells: a multiple of kLaneMultiple.
 void half_energies_row(const float* energies, int cells, float scale, std::uint16_t* halves);
-void half_energies_row_ref(const float* energies, int cells, float scale, std::uint16_t* halves);
 
 /// energies = unit · halves.
 void energies_of_half_row(const std::uint16_t* halves, int cells, float unit, float* energies);
-void energies_of_half_row_ref(const std::uint16_t* halves, int cells, float unit, float* energies);
 
 /// Mean of the four columns of each block, times `scale`, as half floats.
 void reduce_energies_row(const BlockRow<float>& row, float scale, std::uint16_t* halves);
-void reduce_energies_row_ref(const BlockRow<float>& row, float scale, std::uint16_t* halves);
 void reduce_half_energies_row(const BlockRow<std::uint16_t>& row, std::uint16_t* halves);
-void reduce_half_energies_row_ref(const BlockRow<std::uint16_t>& row, std::uint16_t* halves);
 
 /// Columns of a level and the columns of the next coarser level that cover them: column x lies in
 /// coarser column x / 2.
@@ -65,9 +61,7 @@ struct CoarserRow {
 
 /// output = unit · coarser.
 void energies_from_coarser_row(const CoarserRow& row, float* output);
-void energies_from_coarser_row_ref(const CoarserRow& row, float* output);
 /// output = ½ (own + unit · coarser).
 void energies_with_coarser_row(const CoarserRow& row, const float* own, float* output);
-void energies_with_coarser_row_ref(const CoarserRow& row, const float* own, float* output);
 
 }  // namespace vantage::kernels

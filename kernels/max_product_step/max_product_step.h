@@ -84,8 +84,4 @@ inline int max_product_work_cells(int lanes, int prior_radius, int segments = 1,
 void max_product_start_row(const MaxProductRow& row);
 void max_product_row(const MaxProductRow& row);
 
-/// Scalar reference.
-void max_product_start_row_ref(const MaxProductRow& row);
-void max_product_row_ref(const MaxProductRow& row);
-
 }  // namespace vantage::kernels

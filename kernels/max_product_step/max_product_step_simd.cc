@@ -13,11 +13,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-static constexpr auto& start = max_product_start_row_ref;
-static constexpr auto& step = max_product_row_ref;
-#else
-
 using EnergyColumns = StarColumns<FixedEnergy>;
 
 // Energies E0.
@@ -375,7 +370,6 @@ void step(const MaxProductRow& row) {
     run_columns<StarEnergies<false> >(row);
   }
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

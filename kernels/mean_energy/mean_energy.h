@@ -22,7 +22,4 @@ void mean_energy_row(const WinnerRow& row, const EnergyUnit& unit, float* energi
 void winner_energy_row(const WinnerRow& row, const EnergyUnit& unit, const std::int32_t* winners,
                        float* energy);
 
-/// Scalar reference of mean_energy_row().
-void mean_energy_row_ref(const WinnerRow& row, const EnergyUnit& unit, float* energies);
-
 }  // namespace vantage::kernels

@@ -33,10 +33,4 @@ void reduce_left_part(const PairRow& row, const BlockRow<std::uint8_t>& part, in
 /// energies: of all blocks of the right image.
 void reduce_right_row(const PairRow& row, std::uint8_t* energies);
 
-/// Scalar references.
-void start_pair_row_ref(const PairRow& row);
-void reduce_left_part_ref(const PairRow& row, const BlockRow<std::uint8_t>& part, int first_column,
-                          std::uint8_t* energies);
-void reduce_right_row_ref(const PairRow& row, std::uint8_t* energies);
-
 }  // namespace vantage::kernels

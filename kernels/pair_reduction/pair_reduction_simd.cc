@@ -45,12 +45,6 @@ SumBlocks sum_blocks(int columns, int lanes, int disparity_min) {
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-static constexpr auto& start = start_pair_row_ref;
-static constexpr auto& left_part = reduce_left_part_ref;
-static constexpr auto& right_row = reduce_right_row_ref;
-#else
-
 // 16-bit numbers of the even and of the odd lanes of a vector of bytes.
 template <class D8>
 struct EvenOdd {
@@ -337,7 +331,6 @@ void left_part(const PairRow& row, const BlockRow<std::uint8_t>& part, int first
 void right_row(const PairRow& row, std::uint8_t* energies) {
   with_reduction(row, [&](const auto& reduction) HWY_ATTR { reduction.reduce_right(energies); });
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -25,10 +25,8 @@ struct PartnerCells {
 /// those; if none does, of all. Surfaces that some cameras do not see are thus judged by the
 /// others. Writes columns × lanes floats. Identical on every instruction set.
 void choose_energies_row(const PartnerCells& row, float* cells);
-void choose_energies_row_ref(const PartnerCells& row, float* cells);
 
 /// The same for likelihoods in (0, 1], by way of −log. Lanes ≥ row.count become 0.
 void choose_likelihoods_row(const PartnerCells& row, float* cells);
-void choose_likelihoods_row_ref(const PartnerCells& row, float* cells);
 
 }  // namespace vantage::kernels

@@ -37,26 +37,20 @@ struct ContaminatedGaussian {
 
 /// ΔI² (6.2).
 void squared_row(const GreyPairs& row, float* cells);
-void squared_row_ref(const GreyPairs& row, float* cells);
 
 /// min(|ΔI|, truncation); truncation may be infinite.
 void absolute_row(const GreyPairs& row, float truncation, float* cells);
-void absolute_row_ref(const GreyPairs& row, float truncation, float* cells);
 
 /// Birchfield–Tomasi difference: the minimum |ΔI| within half a pixel, between reference and
 /// interpolated partner or vice versa, whichever is smaller.
 void sampling_insensitive_row(const SampledPairs& row, float* cells);
-void sampling_insensitive_row_ref(const SampledPairs& row, float* cells);
 
 /// −log of the measurement model at r² = ΔI². With three channels: the mean of their energies.
 void contaminated_energy_row(const GreyPairs& row, ContaminatedGaussian model, float* cells);
-void contaminated_energy_row_ref(const GreyPairs& row, ContaminatedGaussian model, float* cells);
 
 /// The measurement model at r² = ΔI². With three channels: at the mean of their ΔI². Lanes ≥
 /// row.count become 0.
 void contaminated_likelihood_row(const GreyPairs& row, ContaminatedGaussian model, float* cells);
-void contaminated_likelihood_row_ref(const GreyPairs& row, ContaminatedGaussian model,
-                                     float* cells);
 
 /// Existing cells, geometry.lanes() per column.
 struct CellExtent {
@@ -67,17 +61,14 @@ struct CellExtent {
 
 /// The measurement model at r = the cost in each cell, in place. Lanes ≥ row.count become 0.
 void likelihood_of_costs(const CellExtent& row, ContaminatedGaussian model, float* cells);
-void likelihood_of_costs_ref(const CellExtent& row, ContaminatedGaussian model, float* cells);
 
 /// exp(−energy) of each cell, in place: likelihoods of mean contaminated energies, ≥ 0 up to
 /// rounding. Lanes ≥ row.count become 0.
 void likelihood_of_energies(const CellExtent& row, float* cells);
-void likelihood_of_energies_ref(const CellExtent& row, float* cells);
 
 /// Minimum and maximum grey level within half a pixel of each pixel, linearly interpolated. Columns
 /// −1 and width are read. The outputs may be written up to the next multiple of kLaneMultiple; the
 /// input is read one column farther.
 void sampling_bounds_row(const float* grey, int width, float* min, float* max);
-void sampling_bounds_row_ref(const float* grey, int width, float* min, float* max);
 
 }  // namespace vantage::kernels

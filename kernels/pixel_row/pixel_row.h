@@ -21,13 +21,9 @@ inline constexpr float kLargestValue<std::uint16_t> = 65535.0F;
 
 /// Copies pixels[x · channels + c], x in [0, width), to row[x · pixel_lanes + c]; x = 0 is
 /// kRowMarginPx pixels after the start of `row`. Margins and unused lanes become 0. channels is 1,
-/// 3 or 4. Identical on every instruction set and to the reference.
+/// 3 or 4. Identical on every instruction set.
 void load_pixel_row(const std::uint8_t* pixels, int width, int channels, float* row);
 void load_pixel_row(const std::uint16_t* pixels, int width, int channels, float* row);
 void load_pixel_row(const float* pixels, int width, int channels, float* row);
-
-void load_pixel_row_ref(const std::uint8_t* pixels, int width, int channels, float* row);
-void load_pixel_row_ref(const std::uint16_t* pixels, int width, int channels, float* row);
-void load_pixel_row_ref(const float* pixels, int width, int channels, float* row);
 
 }  // namespace vantage::kernels

@@ -22,13 +22,6 @@ HWY_INLINE void load_grey(const T* HWY_RESTRICT pixels, int width, float* HWY_RE
   }
 }
 
-#if HWY_TARGET == HWY_SCALAR
-// HWY_SCALAR has no four-lane vector to hold a pixel.
-template <int kChannels, typename T>
-HWY_INLINE void load_colour(const T* pixels, int width, float* row) {
-  load_pixel_row_ref(pixels, width, kChannels, row);
-}
-#else
 // Four pixels of three bytes at a time, from one load of 16 bytes. Returns the number of pixels
 // loaded.
 HWY_INLINE int load_byte_triples(const std::uint8_t* HWY_RESTRICT pixels, int width,
@@ -69,7 +62,6 @@ HWY_INLINE void load_colour(const T* HWY_RESTRICT pixels, int width, float* HWY_
     row[x * 4 + c] = c < kChannels ? static_cast<float>(pixels[x * kChannels + c]) : 0.0F;
   }
 }
-#endif
 
 template <typename T>
 HWY_INLINE void load_any(const T* pixels, int width, int channels, float* row) {
@@ -112,48 +104,6 @@ void load_pixel_row(const std::uint16_t* pixels, int width, int channels, float*
 }
 void load_pixel_row(const float* pixels, int width, int channels, float* row) {
   HWY_DYNAMIC_DISPATCH(load_f32)(pixels, width, channels, row);
-}
-
-// Scalar reference.
-
-namespace {
-
-template <int kChannels, typename T>
-void load_pixels(const T* pixels, int width, float* row) {
-  constexpr int kLanes = pixel_lanes(kChannels);
-  std::fill_n(row - kRowMarginPx * kLanes, kRowMarginPx * kLanes, 0.0F);
-  std::fill_n(row + width * kLanes, kRowMarginPx * kLanes, 0.0F);
-  for (int x = 0; x < width; ++x) {
-    for (int c = 0; c < kChannels; ++c) {
-      row[x * kLanes + c] = static_cast<float>(pixels[x * kChannels + c]);
-    }
-    if constexpr (kChannels == 3) {
-      row[x * kLanes + 3] = 0.0F;
-    }
-  }
-}
-
-template <typename T>
-void load_pixels_of(const T* pixels, int width, int channels, float* row) {
-  if (channels == 1) {
-    load_pixels<1>(pixels, width, row);
-  } else if (channels == 3) {
-    load_pixels<3>(pixels, width, row);
-  } else {
-    load_pixels<4>(pixels, width, row);
-  }
-}
-
-}  // namespace
-
-void load_pixel_row_ref(const std::uint8_t* pixels, int width, int channels, float* row) {
-  load_pixels_of(pixels, width, channels, row);
-}
-void load_pixel_row_ref(const std::uint16_t* pixels, int width, int channels, float* row) {
-  load_pixels_of(pixels, width, channels, row);
-}
-void load_pixel_row_ref(const float* pixels, int width, int channels, float* row) {
-  load_pixels_of(pixels, width, channels, row);
 }
 
 }  // namespace vantage::kernels

@@ -17,7 +17,6 @@
 #include "kernels/ray_census/ray_census.h"
 #include "kernels/simd-inl.h"
 
-#if HWY_TARGET != HWY_SCALAR
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
@@ -111,6 +110,5 @@ HWY_INLINE void with_entries(int thresholds, const ByteByDistance& table, const 
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-#endif
 
 #endif

@@ -16,7 +16,6 @@ namespace vantage::kernels {
 /// Number of differing neighbours, 0..24: bits ÷ thresholds. With three channels: the mean. Writes
 /// columns × lanes floats.
 void ray_hamming_row(const RayCensusPairs& row, float* cells);
-void ray_hamming_row_ref(const RayCensusPairs& row, float* cells);
 
 /// Number of table entries, indexed by the number of differing bits (at most 24 per threshold).
 constexpr int ray_census_distances(int thresholds) { return kRayCensusNeighbours * thresholds + 1; }
@@ -45,8 +44,6 @@ class LikelihoodByDistance {
 /// likelihoods.at(distance). One channel. Lanes ≥ row.count become 0.
 void ray_census_likelihood_row(const RayCensusPairs& row, const LikelihoodByDistance& likelihoods,
                                float* cells);
-void ray_census_likelihood_row_ref(const RayCensusPairs& row,
-                                   const LikelihoodByDistance& likelihoods, float* cells);
 
 /// Bytes indexed by distance, padded to whole vectors.
 struct ByteByDistance {
@@ -68,7 +65,5 @@ struct ByteByDistance {
 /// energies.steps[distance]. One channel. Lanes ≥ row.count become 255.
 void ray_census_energy_row(const RayCensusPairs& row, const ByteByDistance& energies,
                            std::uint8_t* cells);
-void ray_census_energy_row_ref(const RayCensusPairs& row, const ByteByDistance& energies,
-                               std::uint8_t* cells);
 
 }  // namespace vantage::kernels

@@ -1,6 +1,7 @@
 #include "kernels/simd-inl.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,12 +15,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-
-#if HWY_TARGET == HWY_SCALAR
-static constexpr auto& hamming = ray_hamming_row_ref;
-static constexpr auto& likelihoods = ray_census_likelihood_row_ref;
-static constexpr auto& energies = ray_census_energy_row_ref;
-#else
 
 // Codes of one column, in every lane.
 template <int kChannels, int kThresholds, class D8>
@@ -248,7 +243,6 @@ void energies(const RayCensusPairs& row, const ByteByDistance& table, std::uint8
     energy_columns<decltype(thresholds)::value, decltype(entries)::value>(row, table, cells);
   });
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -269,6 +263,24 @@ void ray_census_likelihood_row(const RayCensusPairs& row, const LikelihoodByDist
 void ray_census_energy_row(const RayCensusPairs& row, const ByteByDistance& table,
                            std::uint8_t* cells) {
   HWY_DYNAMIC_DISPATCH(energies)(row, table, cells);
+}
+
+LikelihoodByDistance::LikelihoodByDistance(
+    const std::array<float, kMaxRayCensusDistances>& likelihoods) {
+  for (std::size_t i = 0; i < likelihoods.size(); ++i) {
+    const auto bits = std::bit_cast<std::uint32_t>(likelihoods[i]);
+    for (std::size_t b = 0; b < bytes_.size(); ++b) {
+      bytes_[b][i] = static_cast<std::uint8_t>(bits >> (8 * b));
+    }
+  }
+}
+
+float LikelihoodByDistance::at(int distance) const {
+  std::uint32_t bits = 0;
+  for (std::size_t b = 0; b < bytes_.size(); ++b) {
+    bits |= std::uint32_t{bytes_[b][static_cast<std::size_t>(distance)]} << (8 * b);
+  }
+  return std::bit_cast<float>(bits);
 }
 
 }  // namespace vantage::kernels

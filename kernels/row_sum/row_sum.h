@@ -35,7 +35,4 @@ struct RowSum {
 /// not depend on the radius. Exact modulo 2³². Identical on every instruction set.
 void row_sum(const RowSum& row);
 
-/// Scalar reference: recomputes each sum.
-void row_sum_ref(const RowSum& row);
-
 }  // namespace vantage::kernels

@@ -43,10 +43,6 @@ int scanline_spread_floats(const CandidateGeometry& geometry, const JumpCost& ju
 void scanline_winners_row(const CellRow& row, const JumpCost& jump, const ScanlineWork& work,
                           std::int32_t* winners);
 
-/// Scalar reference.
-void scanline_winners_row_ref(const CellRow& row, const JumpCost& jump, const ScanlineWork& work,
-                              std::int32_t* winners);
-
 /// Second half of both: the best path through path energies.
 void trace_scanline_row(const CellRow& row, const JumpCost& jump, const ScanlineWork& work,
                         std::int32_t* winners);

@@ -96,11 +96,7 @@ void scanline_winners_row(const CellRow& row, const JumpCost& jump, const Scanli
   trace_scanline_row(row, jump, work, winners);
 }
 
-// Scalar reference.
-
 namespace {
-
-constexpr float kNever = std::numeric_limits<float>::infinity();
 
 int first_minimum(const float* paths, CandidateRange candidates) {
   return static_cast<int>(std::min_element(paths + candidates.begin, paths + candidates.end) -
@@ -170,47 +166,6 @@ void trace_scanline_row(const CellRow& row, const JumpCost& jump, const Scanline
     }
     winners[j] = next;
   }
-}
-
-void scanline_winners_row_ref(const CellRow& row, const JumpCost& jump, const ScanlineWork& work,
-                              std::int32_t* winners) {
-  const int lanes = row.geometry.lanes();
-  const int count = row.geometry.count;
-  const int passes = jump.passes(count);
-  float* spread = work.spread;
-  float* next = work.spread + lanes;
-  const float* before = nullptr;  // null: a path starts
-  float min_before = kNever;
-  for (int j = 0; j < row.columns; ++j) {
-    const float* cells = row.cells + static_cast<std::ptrdiff_t>(j) * lanes;
-    float* paths = work.paths + static_cast<std::ptrdiff_t>(j) * lanes;
-    const CandidateRange candidates = row.candidates(row.first_column + j);
-    if (before != nullptr) {
-      std::copy_n(before, lanes, spread);
-    }
-    for (int pass = 0; pass < passes && before != nullptr; ++pass) {
-      const int step = 1 << pass;
-      const float cost = jump.penalty * static_cast<float>(step);
-      for (int i = 0; i < lanes; ++i) {
-        const float below = i >= step ? spread[i - step] : kNever;
-        const float above = i + step < lanes ? spread[i + step] : kNever;
-        next[i] = std::min(spread[i], std::min(below, above) + cost);
-      }
-      std::swap(spread, next);
-    }
-    float min = kNever;
-    for (int i = 0; i < lanes; ++i) {
-      const bool counts = i >= candidates.begin && i < candidates.end;
-      float path =
-          before == nullptr ? 0 : std::min(spread[i], min_before + jump.limit) - min_before;
-      path = counts ? cells[i] + path : kNever;
-      paths[i] = path;
-      min = std::min(min, path);
-    }
-    work.minima[j] = min_before = min;
-    before = candidates.empty() ? nullptr : paths;
-  }
-  trace_scanline_row(row, jump, work, winners);
 }
 
 }  // namespace vantage::kernels

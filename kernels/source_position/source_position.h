@@ -64,10 +64,8 @@ struct SourcePositions {
   float* nearness = nullptr;      ///< q
 };
 
-/// Identical on every instruction set and to the reference.
+/// Identical on every instruction set.
 void source_positions_row(const SourceProjection& source, const SourcePositionRow& row,
                           const SourcePositions& positions);
-void source_positions_row_ref(const SourceProjection& source, const SourcePositionRow& row,
-                              const SourcePositions& positions);
 
 }  // namespace vantage::kernels

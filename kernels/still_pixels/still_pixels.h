@@ -20,17 +20,14 @@ struct FrameRows {
 };
 
 /// change[x] = |Σ (now − before)| over 3×3 pixels, columns clamped at the border. `work` and
-/// `change`: rows as described above. Equal to the reference on every instruction set.
+/// `change`: rows as described above. Equal on every instruction set.
 void box_change_row(const FrameRows& rows, std::int16_t* work, std::int16_t* change);
-void box_change_row_ref(const FrameRows& rows, std::int16_t* work, std::int16_t* change);
 
 /// still[x] = 255 if no change in 3×3 pixels exceeds `limit`, else 0. May write up to the first
 /// multiple of kStillMargin ≥ width. limit < 32767. `changes`: the row above, the row and the row
-/// below (the row itself where there is none). Equal to the reference on every instruction set.
+/// below (the row itself where there is none). Equal on every instruction set.
 void still_row(const std::int16_t* const changes[3], int width, std::int16_t limit,
                std::uint8_t* still);
-void still_row_ref(const std::int16_t* const changes[3], int width, std::int16_t limit,
-                   std::uint8_t* still);
 
 /// still_view[x] = 255 if at least one shift s in [min_shift, max_shift] leads into the image
 /// and still[x + s] is 255 for all of them; else 0. These are the view's pixels that can only come

@@ -12,14 +12,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-#if HWY_TARGET == HWY_SCALAR
-// HWY_SCALAR has no four-lane vector to hold the taps.
-template <typename T>
-void fetch_any(const SurfaceFetchRow<T>& row, float* colours) {
-  fetch_surface_row_ref(row, colours);
-}
-#else
-
 using Quad = hn::FixedTag<float, 4>;
 
 // Source tap of each of the four taps, indexed by a bit mask of the taps on the surface. Taps 1 and
@@ -209,7 +201,6 @@ void fetch_any(const SurfaceFetchRow<T>& row, float* colours) {
     fetch_channels<4>(row, colours);
   }
 }
-#endif
 
 void fetch_u8(const SurfaceFetchRow<std::uint8_t>& row, float* colours) { fetch_any(row, colours); }
 void fetch_u16(const SurfaceFetchRow<std::uint16_t>& row, float* colours) {

@@ -4,17 +4,11 @@
 #include <cstdint>
 
 #include "kernels/surface_fit/surface_blocks.h"
-#if HWY_TARGET != HWY_SCALAR
 #include "kernels/surface_fit/surface_plane-inl.h"
-#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-static constexpr auto& block_row = surface_block_row_ref;
-static constexpr auto& fit_surface_blocks = fit_surface_block_row_ref;
-#else
 // Pixels of half a vector of blocks, which are a vector of floats, and of a whole one.
 constexpr int kHalfPixels = kSurfaceStep;
 constexpr int kBlockPixels = 2 * kSurfaceStep;
@@ -207,7 +201,6 @@ void fit_surface_blocks(const SurfaceRow& blocks, const SurfaceBlockRow& row) {
     fit_block_row<1>(blocks, lattice, row);
   }
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

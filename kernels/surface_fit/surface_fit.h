@@ -102,11 +102,6 @@ void surface_sample_row(const float* disparity_px, const std::uint8_t* unmatched
 /// row's `width` values; those of unmatched pixels stay. Identical on every instruction set.
 void fit_surface_row(const SurfaceRow& row, float* fitted_px);
 
-/// Scalar references.
-void surface_sample_row_ref(const float* disparity_px, const std::uint8_t* unmatched, int width,
-                            const SurfaceFormat& format, std::int16_t* samples);
-void fit_surface_row_ref(const SurfaceRow& row, float* fitted_px);
-
 /// Largest stored disparity: planes through it stay within 16 bits, and those through its negative
 /// stay out of reach of kNoSurface.
 constexpr int max_surface_sample(const SurfaceFormat& format) {

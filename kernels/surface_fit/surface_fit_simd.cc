@@ -1,20 +1,15 @@
 #include "kernels/simd-inl.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "kernels/surface_fit/surface_fit.h"
-#if HWY_TARGET != HWY_SCALAR
 #include "kernels/surface_fit/surface_plane-inl.h"
-#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-static constexpr auto& sample_row_simd = surface_sample_row_ref;
-static constexpr auto& fit_surface_simd = fit_surface_row_ref;
-#else
 void sample_row_simd(const float* disparity_px, const std::uint8_t* unmatched, int width,
                      const SurfaceFormat& format, std::int16_t* samples) {
   const SurfaceTagF d;
@@ -88,7 +83,6 @@ void fit_surface_simd(const SurfaceRow& row, float* fitted_px) {
     fit_row<1>(row, lattice, fitted_px);
   }
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -105,6 +99,42 @@ void surface_sample_row(const float* disparity_px, const std::uint8_t* unmatched
 
 void fit_surface_row(const SurfaceRow& row, float* fitted_px) {
   HWY_DYNAMIC_DISPATCH(fit_surface_simd)(row, fitted_px);
+}
+
+SurfaceFormat surface_format(int min_px, int max_px) {
+  constexpr int kMinFractionBits = 3;  // with less, weights have no steps left
+  SurfaceFormat format;
+  format.middle_px = 0.5F * static_cast<float>(min_px + max_px);
+  const auto fits = [&] {
+    const float reach_px = 0.5F * static_cast<float>(max_px - min_px) + kSurfaceRangeMarginPx;
+    return reach_px * format.units_per_px() <= static_cast<float>(max_surface_sample(format));
+  };
+  while (format.fraction_bits > kMinFractionBits && !fits()) {
+    --format.fraction_bits;
+  }
+  return format;
+}
+
+SurfaceLattice surface_lattice(int radius_px) {
+  if (radius_px < kMaxSurfaceSteps) {
+    return {};
+  }
+  // Arms of two steps reach 2 · (step_x + step_y) columns and rows. At a ratio near 3 : 2 they are
+  // about equally far from the rows and from the diagonals.
+  const int both = radius_px / kMaxSurfaceSteps;
+  const int step_y = radius_px / 5;
+  return {.steps = kMaxSurfaceSteps, .step_x = both - step_y, .step_y = step_y};
+}
+
+SurfaceWeights surface_weights(const SurfaceLattice& lattice, const SurfaceFormat& format) {
+  SurfaceWeights weights;
+  weights.reach = static_cast<int>(kSurfaceReachPx * format.units_per_px());
+  const float unit = std::min(
+      static_cast<float>(lattice.unit_weight << 16) / static_cast<float>(weights.reach), 65535.0F);
+  std::transform(
+      lattice.falloff.begin(), lattice.falloff.end(), weights.share.begin(),
+      [&](float falloff) { return static_cast<std::uint16_t>(std::lround(falloff * unit)); });
+  return weights;
 }
 
 }  // namespace vantage::kernels

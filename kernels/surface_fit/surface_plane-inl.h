@@ -1,5 +1,5 @@
 // Planes of a vector of pixels or blocks, the vector form of surface_plane.h. Included once per
-// target by dispatched files, not by those of HWY_SCALAR, whose vectors have no halves.
+// target by dispatched files.
 
 #if defined(VANTAGE_KERNELS_SURFACE_PLANE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VANTAGE_KERNELS_SURFACE_PLANE_INL_H_

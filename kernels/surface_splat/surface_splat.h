@@ -69,8 +69,7 @@ struct SplatBand {
 ///
 /// Adds the upper row's pixels, their edges and the quads between the rows. Since the maximum is
 /// kept, neither the order of calls nor the division of a view into bands matters. Identical on
-/// every instruction set and to the reference.
+/// every instruction set.
 void splat_rows(const SplatRows& rows, const SplatBand& band);
-void splat_rows_ref(const SplatRows& rows, const SplatBand& band);
 
 }  // namespace vantage::kernels

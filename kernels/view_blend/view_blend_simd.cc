@@ -9,15 +9,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
-#if HWY_TARGET == HWY_SCALAR
-// HWY_SCALAR has no four-lane vector to hold a pixel.
-template <typename T>
-int blend_channels(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
-                   const BlendedRow<T>& view) {
-  return blend_row_ref(pair, weights, channels, view);
-}
-#else
-
 // Whether the surface at positions [x, x + lanes) continues on both sides; it counts as continuing
 // at the row's ends. With several lanes, call only where both sides exist.
 template <class D>
@@ -262,7 +253,6 @@ HWY_INLINE int blend_channels(const WarpedPairRow& pair, const BlendWeights& wei
   }
   return channels == 3 ? blend_any<3>(pair, weights, view) : blend_any<4>(pair, weights, view);
 }
-#endif
 
 int blend_u8(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
              const BlendedRow<std::uint8_t>& view) {

@@ -58,10 +58,8 @@ struct ProjectedRow {
   std::int32_t* line = nullptr;    ///< floor(v + ½), likewise
 };
 
-/// Identical on every instruction set and to the reference.
+/// Identical on every instruction set.
 void project_row(const ViewProjection& view, const ProjectionSource& source,
                  const ProjectedRow& row);
-void project_row_ref(const ViewProjection& view, const ProjectionSource& source,
-                     const ProjectedRow& row);
 
 }  // namespace vantage::kernels

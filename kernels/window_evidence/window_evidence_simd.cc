@@ -12,10 +12,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-static constexpr auto& evidence = window_evidence_row_ref;
-#else
-
 // With columns of 2×2 pixels a block of 16 bytes holds eight candidates of the left pixel of a
 // column's row, and of the right one. A vector holds such blocks of, as far as they fit, the two
 // columns of a pair, then both rows.
@@ -325,7 +321,6 @@ void evidence(const WindowEvidenceRow& row, const ByteByDistance& by_distance,
     }
   });
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

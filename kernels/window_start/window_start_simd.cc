@@ -9,11 +9,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-static constexpr auto& second_winners = second_winners_row_ref;
-static constexpr auto& start = window_start_row_ref;
-#else
-
 void second_winners(const std::array<const std::int16_t*, 3>& winners, int columns,
                     std::int16_t* second) {
   const hn::CappedTag<std::int16_t, kWindowMargin> d;
@@ -90,7 +85,6 @@ void start(const CoarseEnergies& coarse, WindowCells* support) {
     start_spaced<2>(coarse, support);
   }
 }
-#endif
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -12,15 +12,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-#if HWY_TARGET == HWY_SCALAR
-void step(const WindowStepRow& row, const std::array<WindowCells*, kWindows>& support) {
-  window_step_row_ref(row, support);
-}
-void winners(const WindowStepRow& row, const WindowWinners& winners) {
-  window_winners_row_ref(row, winners);
-}
-#else
-
 // One window per 64-bit lane. Its bytes become two vectors of words, those of even and of odd
 // candidates, which need no widening.
 using Tag64 = hn::ScalableTag<std::uint64_t>;
@@ -414,7 +405,6 @@ void winners(const WindowStepRow& given, const WindowWinners& given_winners) {
     }
   }
 }
-#endif
 
 void disparities(const WindowDisparities& row, float* disparity_px) {
   const hn::ScalableTag<float> d;

@@ -22,7 +22,6 @@ HWY_INLINE auto lane_numbers(int first) {
   return hn::Add(hn::Iota(d32, 0), hn::Set(d32, first));
 }
 
-#if HWY_TARGET != HWY_SCALAR
 // Minima of kColumns work columns, by transposition: neighbouring lanes of two vectors are merged
 // into one until lane k of the last vector belongs to column k.
 template <int kColumns>
@@ -36,19 +35,16 @@ HWY_INLINE auto minima_of(const std::int32_t* work) {
     return hn::Min(hn::ConcatEven(d32, high, low), hn::ConcatOdd(d32, high, low));
   }
 }
-#endif
 
 // minima[j] = minimum of the first Lanes(int32) values of work column j; columns are kLaneMultiple
 // values apart.
 HWY_INLINE void reduce_minima(const std::int32_t* work, int columns, std::int32_t* minima) {
   const hn::ScalableTag<std::int32_t> d32;
   int j = 0;
-#if HWY_TARGET != HWY_SCALAR
   constexpr int step = static_cast<int>(hn::MaxLanes(d32));
   for (; j + step <= columns; j += step, work += step * kLaneMultiple) {
     hn::StoreU(minima_of<step>(work), d32, minima + j);
   }
-#endif
   for (; j < columns; ++j, work += kLaneMultiple) {
     minima[j] = hn::GetLane(hn::MinOfLanes(d32, hn::LoadU(d32, work)));
   }

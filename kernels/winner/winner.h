@@ -86,7 +86,4 @@ void select_winners_row(const WinnerRow& row, std::int32_t* winners);
 void locate_minima_row(const std::int32_t* cells, const std::int32_t* minima, int lanes,
                        int columns, std::int32_t* winners);
 
-/// Scalar reference.
-void select_winners_row_ref(const WinnerRow& row, std::int32_t* winners);
-
 }  // namespace vantage::kernels

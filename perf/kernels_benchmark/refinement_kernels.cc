@@ -84,8 +84,7 @@ struct FilledRows {
     return static_cast<int>(
         std::count(rows.unmatched.data(), rows.unmatched.data() + kWidth, std::uint8_t{255}));
   }
-  template <class Kernel>
-  void take_medians(Kernel kernel) {
+  void take_medians() {
     constexpr int kFirst = kReach * kPitch + kMargin;
     const kernels::FilledRow row{
         .disparity_px = map_px.data() + kFirst,
@@ -95,7 +94,7 @@ struct FilledRows {
         .unmatched = unmatched.data(),
         .width = kWidth};
     filled_px.assign(row.disparity_px, row.disparity_px + kWidth);
-    kernel(row, filled_px.data());
+    kernels::take_filled_medians_row(row, filled_px.data());
   }
 };
 
@@ -113,12 +112,8 @@ KernelBenchmarks refinement_kernels() {
                         [](Rows& d) { d.cross_check(); }),
       plain(on_own_data<Rows>("snap_discontinuities_row", "pixel", kWidth, {},
                               [](Rows& d) { d.snap(); })),
-      plain(on_own_data<FilledRows>(
-          "take_filled_medians_row_ref, of filled pixels", "pixel", filled, {},
-          [](FilledRows& d) { d.take_medians(kernels::take_filled_medians_row_ref); })),
-      on_own_data<FilledRows>(
-          "take_filled_medians_row, of filled pixels", "pixel", filled, {},
-          [](FilledRows& d) { d.take_medians(kernels::take_filled_medians_row); }),
+      on_own_data<FilledRows>("take_filled_medians_row, of filled pixels", "pixel", filled, {},
+                              [](FilledRows& d) { d.take_medians(); }),
   };
 }
 

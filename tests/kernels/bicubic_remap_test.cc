@@ -84,7 +84,7 @@ class BicubicRemap : public testing::Test {};
 using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(BicubicRemap, PixelTypes);
 
-TYPED_TEST(BicubicRemap, EqualOnEveryInstructionSetAndToReference) {
+TYPED_TEST(BicubicRemap, EqualOnEveryInstructionSet) {
   using T = TypeParam;
   std::mt19937 random(1);
   for (const auto& [width, height] :
@@ -93,15 +93,9 @@ TYPED_TEST(BicubicRemap, EqualOnEveryInstructionSetAndToReference) {
       for (const int count : {0, 1, 5, 63, 64, 65, 149, 200}) {
         const Scene<T> scene(random, width, height, channels, count);
         const std::size_t size = static_cast<std::size_t>(count * channels);
-        std::vector<T> expected(size);
-        remap_bicubic_row_ref(scene.row(), expected.data());
-        for_each_target([&] {
-          GuardedRow<T> result(size, 1, T{77});
-          remap_bicubic_row(scene.row(), result.data());
-          ASSERT_EQ(result.values(), expected)
-              << width << "x" << height << ", " << channels << " channels, " << count;
-          ASSERT_TRUE(result.intact());
-        });
+        SCOPED_TRACE(testing::Message()
+                     << width << "x" << height << ", " << channels << " channels");
+        row_on_every_target<T>(size, [&](T* out) { remap_bicubic_row(scene.row(), out); });
       }
     }
   }
@@ -116,16 +110,11 @@ TYPED_TEST(BicubicRemap, ReadsNothingBehindTheImage) {
     for (int from_right = 2; from_right <= 6; ++from_right) {
       Scene<T> scene(random, 96, 4, channels, 64);
       for (int n = 0; n < 64; ++n) {
-        scene.x_px[static_cast<std::size_t>(n)] = 95.25F - static_cast<float>(from_right);
-        scene.y_px[static_cast<std::size_t>(n)] = 1.5F;
+        scene.x_px[n] = 95.25F - static_cast<float>(from_right);
+        scene.y_px[n] = 1.5F;
       }
-      std::vector<T> expected(static_cast<std::size_t>(64 * channels));
-      remap_bicubic_row_ref(scene.row(), expected.data());
-      for_each_target([&] {
-        std::vector<T> result(expected.size());
-        remap_bicubic_row(scene.row(), result.data());
-        ASSERT_EQ(result, expected) << channels << " channels, " << from_right;
-      });
+      SCOPED_TRACE(testing::Message() << channels << " channels, " << from_right);
+      row_on_every_target<T>(64 * channels, [&](T* out) { remap_bicubic_row(scene.row(), out); });
     }
   }
 }
@@ -136,11 +125,11 @@ TYPED_TEST(BicubicRemap, IsKeysConvolutionWithReplicatedBorder) {
   for (const auto& [width, height] : {std::pair{1, 1}, {2, 7}, {7, 2}, {30, 20}}) {
     for (const int channels : {1, 3, 4}) {
       const Scene<T> scene(random, width, height, channels, 150);
-      std::vector<T> result(static_cast<std::size_t>(150 * channels));
+      std::vector<T> result(150 * channels);
       remap_bicubic_row(scene.row(), result.data());
       for (int n = 0; n < 150; ++n) {
-        const double x = scene.x_px[static_cast<std::size_t>(n)];
-        const double y = scene.y_px[static_cast<std::size_t>(n)];
+        const double x = scene.x_px[n];
+        const double y = scene.y_px[n];
         const bool seen = x >= -0.5 && x <= width - 0.5 && y >= -0.5 && y <= height - 0.5;
         for (int c = 0; c < channels; ++c) {
           double sum = 0;
@@ -149,9 +138,9 @@ TYPED_TEST(BicubicRemap, IsKeysConvolutionWithReplicatedBorder) {
           for (int j = -2; seen && j <= height + 2; ++j) {
             for (int i = -2; i <= width + 2; ++i) {
               const double weight = keys(x - i) * keys(y - j);
-              const double value = static_cast<double>(scene.pixels[static_cast<std::size_t>(
-                  std::clamp(j, 0, height - 1) * scene.stride +
-                  std::clamp(i, 0, width - 1) * channels + c)]);
+              const double value =
+                  static_cast<double>(scene.pixels[std::clamp(j, 0, height - 1) * scene.stride +
+                                                   std::clamp(i, 0, width - 1) * channels + c]);
               sum += weight * value;
               if (std::abs(x - i) < 2 && std::abs(y - j) < 2) {
                 min = std::min(min, value);
@@ -160,8 +149,7 @@ TYPED_TEST(BicubicRemap, IsKeysConvolutionWithReplicatedBorder) {
             }
           }
           const double tolerance = std::is_same_v<T, float> ? 2e-6 : 0.5 + kLargestValue<T> * 1e-6;
-          ASSERT_NEAR(result[static_cast<std::size_t>(n * channels + c)], std::clamp(sum, min, max),
-                      tolerance)
+          ASSERT_NEAR(result[n * channels + c], std::clamp(sum, min, max), tolerance)
               << width << "x" << height << " at " << x << ", " << y;
         }
       }
@@ -176,10 +164,10 @@ TYPED_TEST(BicubicRemap, WholePositionsAreThePixelsThemselves) {
     Scene<T> scene(random, 70, 5, channels, 70);
     for (int y = 0; y < 5; ++y) {
       for (int n = 0; n < 70; ++n) {
-        scene.x_px[static_cast<std::size_t>(n)] = static_cast<float>(n);
-        scene.y_px[static_cast<std::size_t>(n)] = static_cast<float>(y);
+        scene.x_px[n] = static_cast<float>(n);
+        scene.y_px[n] = static_cast<float>(y);
       }
-      std::vector<T> result(static_cast<std::size_t>(70 * channels));
+      std::vector<T> result(70 * channels);
       remap_bicubic_row(scene.row(), result.data());
       const auto first = scene.pixels.begin() + y * scene.stride;
       EXPECT_EQ(result, std::vector<T>(first, first + 70 * channels)) << "row " << y;

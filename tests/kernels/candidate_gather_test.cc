@@ -20,7 +20,7 @@ TYPED_TEST(CandidateGather, ReadsTheNearestSampleInside) {
   std::mt19937 random(5);
   for (int round = 0; round < 200; ++round) {
     const int samples = 1 + static_cast<int>(random() % 40);
-    std::vector<TypeParam> row(static_cast<std::size_t>(samples));
+    std::vector<TypeParam> row(samples);
     for (TypeParam& value : row) {
       value = static_cast<TypeParam>(random() % 256);
     }
@@ -39,9 +39,8 @@ TYPED_TEST(CandidateGather, ReadsTheNearestSampleInside) {
       const CandidateRange inside =
           candidates_inside(offsets.data(), columns.lanes, columns.last_sample, first);
       for (int i = 0; i < columns.lanes; ++i) {
-        const int sample = first + offsets[static_cast<std::size_t>(i)];
-        ASSERT_EQ(values[static_cast<std::size_t>(j * columns.lanes + i)],
-                  row[static_cast<std::size_t>(std::clamp(sample, 0, samples - 1))]);
+        const int sample = first + offsets[i];
+        ASSERT_EQ(values[j * columns.lanes + i], row[std::clamp(sample, 0, samples - 1)]);
         ASSERT_EQ(i >= inside.begin && i < inside.end, sample >= 0 && sample < samples);
       }
     }
@@ -60,7 +59,7 @@ TEST(RowResampling, IsExactForLinesAndStaysWithinItsPixels) {
     for (const float fraction : {0.25F, 0.5F, 0.75F}) {
       resample_row(line.data(), width, fraction, values.data());
       for (int x = 1; x + 2 < width; ++x) {
-        EXPECT_EQ(values[static_cast<std::size_t>(x)], 4 * (static_cast<float>(x) + fraction));
+        EXPECT_EQ(values[x], 4 * (static_cast<float>(x) + fraction));
       }
       resample_row(steps.data(), width, fraction, values.data());
       EXPECT_TRUE(std::ranges::all_of(values, [](float v) { return v >= 10 && v <= 200; }));

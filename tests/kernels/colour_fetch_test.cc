@@ -9,7 +9,7 @@ namespace vantage::kernels::colour_fetch_test {
 using test::keys;
 
 std::vector<float> random_values(std::mt19937& random, int count) {
-  std::vector<float> values(static_cast<std::size_t>(count));
+  std::vector<float> values(count);
   for (float& value : values) {
     value = static_cast<float>(random() % 256);
   }
@@ -55,7 +55,7 @@ TEST(FetchBicubic, EqualOnEveryInstructionSetAndToReference) {
                             random_values(random, width * lanes), lanes, s);
         for (const float limit : {0.0F, 1.0F}) {
           BicubicFetchRow row = line.bicubic(lanes, s, limit);
-          std::vector<float> expected(static_cast<std::size_t>(width * lanes));
+          std::vector<float> expected(width * lanes);
           fetch_bicubic_row_ref(row, expected.data());
           for_each_target([&] {
             for (const bool is_in_range : {false, true}) {
@@ -85,7 +85,7 @@ TEST(FetchBicubic, EqualsReferenceForAnyDisparitiesAndValues) {
         BicubicFetchRow row = line.bicubic(lanes, s, 1.0F);
         row.largest_value =
             100;  // many pixels are outside the range of their type, as floats may be
-        std::vector<float> expected(static_cast<std::size_t>(width * lanes));
+        std::vector<float> expected(width * lanes);
         fetch_bicubic_row_ref(row, expected.data());
         for_each_target([&] {
           std::vector<float> colours(expected.size(), -1.0F);
@@ -102,23 +102,23 @@ TEST(FetchBicubic, IsKeysConvolutionWithReplicatedBorder) {
   for (const int width : {1, 2, 3, 17, 80}) {
     for (const double s : {-0.5, 0.25, 1.0}) {
       // One surface whose disparity has a fraction.
-      const std::vector<float> disparities(static_cast<std::size_t>(width), 1.3F);
+      const std::vector<float> disparities(width, 1.3F);
       const std::vector<float> values = random_values(random, width);
       const Scanline line(disparities, values, 1, s);
-      std::vector<float> colours(static_cast<std::size_t>(width));
+      std::vector<float> colours(width);
       fetch_bicubic_row(line.bicubic(1, s, 1.0F), colours.data());
       for (int n = 0; n < width; ++n) {
-        if (std::isnan(line.warped_disparity_px[static_cast<std::size_t>(n)])) {
-          EXPECT_EQ(colours[static_cast<std::size_t>(n)], 0);
+        if (std::isnan(line.warped_disparity_px[n])) {
+          EXPECT_EQ(colours[n], 0);
           continue;
         }
         const double column = n + s * 1.3F;
         double expected = 0;
         for (int x = -4; x < width + 4; ++x) {
           const int inside = std::clamp(x, 0, width - 1);
-          expected += keys(column - x) * values[static_cast<std::size_t>(inside)];
+          expected += keys(column - x) * values[inside];
         }
-        EXPECT_NEAR(colours[static_cast<std::size_t>(n)], std::clamp(expected, 0.0, 255.0), 1e-3);
+        EXPECT_NEAR(colours[n], std::clamp(expected, 0.0, 255.0), 1e-3);
       }
     }
   }
@@ -153,17 +153,16 @@ TEST(FetchForward, SourcePixelsAndLinearGaps) {
       fetch_forward_row({line.pixels.row(), line.source_column.data(), width, lanes},
                         colours.data());
       for (int n = 0; n < width; ++n) {
-        const float column = line.source_column[static_cast<std::size_t>(n)];
+        const float column = line.source_column[n];
         for (int c = 0; c < lanes; ++c) {
           double expected = 0;
           if (!std::isnan(column)) {
             const int x = static_cast<int>(std::floor(column));
             const int next = std::min(x + 1, width - 1);
             const double f = static_cast<double>(column) - x;
-            expected = (1 - f) * values[static_cast<std::size_t>(x * lanes + c)] +
-                       f * values[static_cast<std::size_t>(next * lanes + c)];
+            expected = (1 - f) * values[x * lanes + c] + f * values[next * lanes + c];
           }
-          ASSERT_NEAR(colours[static_cast<std::size_t>(n * lanes + c)], expected, 1e-4);
+          ASSERT_NEAR(colours[n * lanes + c], expected, 1e-4);
         }
       }
     }

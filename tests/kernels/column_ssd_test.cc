@@ -199,8 +199,6 @@ const float kScales[] = {kMaxScale, 255.0F, 1e-20F, 1.0F};
 const auto kPairsKernel = [](const auto& row, const std::int32_t* previous, std::int32_t* sums) {
   column_ssd_row(row, previous, sums);
 };
-const auto kReferenceKernel = [](const auto& row, const std::int32_t* previous,
-                                 std::int32_t* sums) { column_ssd_row_ref(row, previous, sums); };
 
 template <typename Kernel>
 void sweep_pairs(const Kernel& kernel) {
@@ -218,9 +216,6 @@ void sweep_floats(const Kernel& kernel) {
     check_float(kernel, random, kScales[columns % 4], rows, partner_step, columns, lanes);
   });
 }
-
-TEST(ColumnSsdReference, PairsAreSumsOfSquaredDifferences) { sweep_pairs(kReferenceKernel); }
-TEST(ColumnSsdReference, FloatsAreSumsOfRoundedSquares) { sweep_floats(kReferenceKernel); }
 
 VANTAGE_ON_EVERY_TARGET(ColumnSsd);
 
@@ -250,7 +245,7 @@ TEST_P(ColumnSsd, InterleavesRows) {
                         rows.leaving ? leaving.data() : nullptr, shift, count, pairs.data());
         // What lies behind the last pixel, up to a whole vector, is left to the kernel.
         std::vector<std::int32_t> values = pairs.values();
-        values.resize(static_cast<std::size_t>(count));
+        values.resize(count);
         expected.resize(values.size());
         ASSERT_EQ(values, expected) << count << " pixels, shift " << shift;
         ASSERT_TRUE(pairs.intact()) << count << " pixels";

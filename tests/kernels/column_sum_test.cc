@@ -6,6 +6,8 @@
 
 namespace vantage::kernels::column_sum_test {
 
+VANTAGE_ON_EVERY_TARGET(ColumnSumOn);
+
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
 constexpr int kCounts[] = {16, 32, 48, 64, 80, 144, 272};
 
@@ -33,8 +35,7 @@ std::int64_t quantised(float cost, const Quantisation& quantisation) {
   return rest > 0.5 || (rest == 0.5 && integer % 2 != 0) ? integer + 1 : integer;
 }
 
-template <typename Kernel>
-void sweep(const Kernel& kernel) {
+TEST_P(ColumnSumOn, MovesSumsByOneRow) {
   std::mt19937 random(41);
   for (const int count : kCounts) {
     for (const Quantisation& quantisation : kQuantisations) {
@@ -59,20 +60,14 @@ void sweep(const Kernel& kernel) {
                                leaves ? leaving.data() : nullptr, quantisation.offset,
                                quantisation.scale, count};
         GuardedRow<std::int32_t> sums(size, 3, kSentinel);
-        kernel(row, previous.data(), sums.data());
+        column_sum_row(row, previous.data(), sums.data());
         ASSERT_EQ(sums.values(), expected);
         ASSERT_TRUE(sums.intact());
-        kernel(row, previous.data(), previous.data());
+        column_sum_row(row, previous.data(), previous.data());
         ASSERT_EQ(previous, expected) << "in place";
       }
     }
   }
 }
-
-TEST(ColumnSumReference, MovesSumsByOneRow) { sweep(column_sum_row_ref); }
-
-VANTAGE_ON_EVERY_TARGET(ColumnSumOn);
-
-TEST_P(ColumnSumOn, MovesSumsByOneRow) { sweep(column_sum_row); }
 
 }  // namespace vantage::kernels::column_sum_test

@@ -39,7 +39,7 @@ std::vector<double> plain_energies(const Shape& shape, const std::vector<float>&
     std::vector<double> column;
     for (int i = 0; i < shape.count; ++i) {
       const auto energy = [&](const std::vector<float>& row, int x) {
-        return -std::log(static_cast<double>(row[static_cast<std::size_t>(x * lanes + i)]));
+        return -std::log(static_cast<double>(row[x * lanes + i]));
       };
       column.push_back(energy(upper, left) + energy(upper, right) + energy(lower, left) +
                        energy(lower, right));
@@ -54,7 +54,7 @@ std::vector<double> plain_energies(const Shape& shape, const std::vector<float>&
 
 constexpr float kWeights[] = {1, 0.6F, 0.015F};
 
-TEST_P(CompactLikelihoods, EnergiesOfBlocksAreWeightedSums) {
+TEST(CompactLikelihoods, EnergiesOfBlocksAreWeightedSums) {
   std::mt19937 random(1);
   for (const Shape& shape : kShapes) {
     const float weight = kWeights[random() % std::size(kWeights)];
@@ -64,27 +64,22 @@ TEST_P(CompactLikelihoods, EnergiesOfBlocksAreWeightedSums) {
       const auto lower = has_lower ? random_likelihoods(shape, -20, random) : upper;
       const BlockRow<float> row{upper.data(), lower.data(), shape.columns, lanes};
       const auto cells = static_cast<std::size_t>(row.blocks() * lanes);
-      std::vector<float> work(static_cast<std::size_t>(lanes), -7);
-      GuardedRow<std::uint8_t> actual(cells, 3, 77);
-      reduce_likelihoods_row(row, weight, work.data(), actual.data());
-      EXPECT_TRUE(actual.intact());
-      std::vector<std::uint8_t> reference(cells);
-      reduce_likelihoods_row_ref(row, weight, reference.data());
-      ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
+      std::vector<float> work(lanes, -7);
+      const auto reduced = row_on_every_target<std::uint8_t>(cells, reduce_likelihoods_row, row,
+                                                             weight, work.data());
       const auto plain = plain_energies(shape, upper, lower);
       for (std::size_t k = 0; k < cells; ++k) {
         const auto lane = static_cast<int>(k) % lanes;
         if (lane >= shape.count) {
           const std::size_t first = k - static_cast<std::size_t>(lane);
-          ASSERT_GE(reference[k],
-                    *std::max_element(&reference[first], &reference[first] + shape.count));
+          ASSERT_GE(reduced[k], *std::max_element(&reduced[first], &reduced[first] + shape.count));
           continue;
         }
         const std::size_t block = k / static_cast<std::size_t>(lanes);
         const double energy =
             weight *
             plain[block * static_cast<std::size_t>(shape.count) + static_cast<std::size_t>(lane)];
-        ASSERT_NEAR(reference[k] * kEnergyStep, std::min(energy, kMaxCompact * kEnergyStep + 0.0),
+        ASSERT_NEAR(reduced[k] * kEnergyStep, std::min(energy, kMaxCompact * kEnergyStep + 0.0),
                     kEnergyStep / 2 + 1e-4);
       }
     }
@@ -104,6 +99,26 @@ TEST_P(CompactLikelihoods, VanishingLikelihoodsStayFinite) {
   EXPECT_EQ(energies[15], kMaxCompact);
 }
 
+/// Sums of the blocks above the least of their column, times the weight, halves rounded up.
+std::vector<std::uint8_t> plain_compact(const BlockRow<std::uint8_t>& row, float weight) {
+  const double units = std::round(weight * kCompactWeightUnits) / kCompactWeightUnits;
+  std::vector<std::uint8_t> energies;
+  for (int b = 0; b < row.blocks(); ++b) {
+    std::vector<int> sums;
+    for (int lane = 0; lane < row.lanes; ++lane) {
+      const std::ptrdiff_t left = row.left(b) + lane;
+      const std::ptrdiff_t right = row.right(b) + lane;
+      sums.push_back(row.upper[left] + row.upper[right] + row.lower[left] + row.lower[right]);
+    }
+    const int min = *std::min_element(sums.begin(), sums.end());
+    for (const int sum : sums) {
+      const double energy = std::floor((sum - min) * units + 0.5);
+      energies.push_back(static_cast<std::uint8_t>(std::min<double>(energy, kMaxCompact)));
+    }
+  }
+  return energies;
+}
+
 TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreWeightedSums) {
   std::mt19937 random(2);
   for (const Shape& shape : kShapes) {
@@ -121,13 +136,11 @@ TEST_P(CompactLikelihoods, CompactEnergiesOfBlocksAreWeightedSums) {
       const BlockRow<std::uint8_t> row{rows[0].data(), rows[lower].data(), shape.columns, lanes};
       const auto cells = static_cast<std::size_t>(row.blocks() * lanes);
       GuardedRow<std::uint8_t> actual(cells, 5, 77);
-      GuardedRow<std::uint16_t> work(static_cast<std::size_t>(lanes), 3, 7777);
+      GuardedRow<std::uint16_t> work(lanes, 3, 7777);
       reduce_compact_energies_row(row, weight, work.data(), actual.data());
       EXPECT_TRUE(work.intact());
       EXPECT_TRUE(actual.intact());
-      std::vector<std::uint8_t> reference(cells);
-      reduce_compact_energies_row_ref(row, weight, reference.data());
-      ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
+      ASSERT_EQ(actual.values(), plain_compact(row, weight)) << shape.columns << " columns";
     }
   }
 }
@@ -144,35 +157,32 @@ TEST_P(CompactLikelihoods, SlantsTakeTheSmallestOfThreeCandidates) {
         actual.data()[k] = static_cast<std::uint8_t>(
             is_candidate ? random_int(random, 0, kMaxCompact) : kMaxCompact);
       }
-      std::vector<std::uint8_t> reference = actual.values();
-      std::vector<int> plain;
+      const std::vector<std::uint8_t> before = actual.values();
+      std::vector<std::uint8_t> plain;
       for (int k = 0; k < shape.columns * lanes; ++k) {
-        int min = reference[static_cast<std::size_t>(k)];
+        int min = before[k];
         for (const int beside : {k - 1, k + 1}) {
           if (beside >= 0 && beside / lanes == k / lanes && beside < shape.columns * lanes) {
-            min = std::min(min, reference[static_cast<std::size_t>(beside)] + penalty);
+            min = std::min(min, before[beside] + penalty);
           }
         }
-        plain.push_back(min);
+        plain.push_back(static_cast<std::uint8_t>(min));
       }
-      allow_slant_row_ref(reference.data(), shape.columns, lanes,
-                          static_cast<std::uint8_t>(penalty));
-      EXPECT_TRUE(std::ranges::equal(plain, reference));
       allow_slant_row(actual.data(), shape.columns, lanes, static_cast<std::uint8_t>(penalty));
       EXPECT_TRUE(actual.intact());
-      ASSERT_EQ(actual.values(), reference) << shape.columns << " columns of " << shape.count;
+      ASSERT_EQ(actual.values(), plain) << shape.columns << " columns of " << shape.count;
     }
   }
 }
 
-TEST(CompactLikelihoodsReference, AddsUpAndSubtractsTheLeast) {
+TEST_P(CompactLikelihoods, AddsUpAndSubtractsTheLeast) {
   // Lanes 0, 1 and 2 of three columns: blocks {0, 1} and {2}.
   std::vector<std::uint8_t> upper(48, 255);
   std::vector<std::uint8_t> lower(48, 255);
   const auto set = [](std::vector<std::uint8_t>& row, int column, int a, int b, int c) {
     const int values[] = {a, b, c};
     for (int lane = 0; lane < 3; ++lane) {
-      row[static_cast<std::size_t>(16 * column + lane)] = static_cast<std::uint8_t>(values[lane]);
+      row[16 * column + lane] = static_cast<std::uint8_t>(values[lane]);
     }
   };
   set(upper, 0, 0, 10, 200);
@@ -182,22 +192,23 @@ TEST(CompactLikelihoodsReference, AddsUpAndSubtractsTheLeast) {
   set(upper, 2, 0, 20, 100);
   set(lower, 2, 1, 0, 100);
   std::vector<std::uint8_t> energies(32);
+  std::vector<std::uint16_t> work(16);
   const BlockRow<std::uint8_t> row{upper.data(), lower.data(), 3, 16};
-  reduce_compact_energies_row_ref(row, 1, energies.data());
+  reduce_compact_energies_row(row, 1, work.data(), energies.data());
   EXPECT_EQ(energies[0], 1);    // 12 − 11
   EXPECT_EQ(energies[1], 0);    // 11
   EXPECT_EQ(energies[2], 255);  // 403 − 11
   EXPECT_EQ(energies[16], 0);   // 2 · (0 + 1)
   EXPECT_EQ(energies[17], 38);  // 2 · (20 + 0) − 2
   EXPECT_EQ(energies[18], 255);
-  reduce_compact_energies_row_ref(row, 0.5F, energies.data());
+  reduce_compact_energies_row(row, 0.5F, work.data(), energies.data());
   EXPECT_EQ(energies[0], 1);  // ½, rounded up
   EXPECT_EQ(energies[2], 196);
   EXPECT_EQ(energies[17], 19);
   EXPECT_EQ(energies[18], 199);
 }
 
-TEST_P(CompactLikelihoods, ExpandToPowers) {
+TEST(CompactLikelihoods, ExpandToPowers) {
   for (const Shape& shape : kShapes) {
     const int lanes = lanes_of(shape);
     std::vector<std::uint8_t> cells;
@@ -205,39 +216,29 @@ TEST_P(CompactLikelihoods, ExpandToPowers) {
       cells.push_back(static_cast<std::uint8_t>(k * 37 % 256));
     }
     const CompactRow row{cells.data(), shape.columns, lanes, shape.count};
-    GuardedRow<float> likelihoods(cells.size(), 1, -3);
-    GuardedRow<float> probabilities(cells.size(), 1, -3);
-    likelihoods_of_compact_row(row, likelihoods.data());
-    probabilities_of_compact_row(row, probabilities.data());
-    EXPECT_TRUE(likelihoods.intact());
-    EXPECT_TRUE(probabilities.intact());
-    std::vector<float> reference(cells.size());
-    likelihoods_of_compact_row_ref(row, reference.data());
-    ASSERT_EQ(likelihoods.values(), reference);
+    const auto likelihoods =
+        row_on_every_target<float>(cells.size(), likelihoods_of_compact_row, row);
+    const auto probabilities =
+        row_on_every_target<float>(cells.size(), probabilities_of_compact_row, row);
     for (std::size_t k = 0; k < cells.size(); ++k) {
       const bool is_candidate = static_cast<int>(k) % lanes < shape.count;
-      const double expected = is_candidate ? std::exp(-cells[k] / 8.0) : 0;
-      ASSERT_NEAR(reference[k], expected, 1e-5 * expected);
-    }
-    probabilities_of_compact_row_ref(row, reference.data());
-    ASSERT_EQ(probabilities.values(), reference);
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      const bool is_candidate = static_cast<int>(k) % lanes < shape.count;
-      const double expected = is_candidate ? std::exp2(-cells[k] / 8.0) : 0;
-      ASSERT_NEAR(reference[k], expected, 1e-5 * expected);
+      const double likelihood = is_candidate ? std::exp(-cells[k] / 8.0) : 0;
+      const double probability = is_candidate ? std::exp2(-cells[k] / 8.0) : 0;
+      ASSERT_NEAR(likelihoods[k], likelihood, 1e-5 * likelihood);
+      ASSERT_NEAR(probabilities[k], probability, 1e-5 * probability);
     }
   }
 }
 
-TEST_P(CompactLikelihoods, ProbabilitiesSurviveToHalfAStep) {
+TEST(CompactLikelihoods, ProbabilitiesSurviveToHalfAStep) {
   std::mt19937 random(3);
   std::vector<float> probabilities = {0, 1, 0.5F, 1e-38F, 1e-30F, 1.0000001F, 0.999F, 0.25F};
   while (probabilities.size() < 256) {
     probabilities.push_back(static_cast<float>(std::exp2(-random_int(random, 0, 36000) / 1000.0)));
   }
-  const auto reference = equal_rows<std::uint8_t>(
-      probabilities.size(), compact_probabilities_row, compact_probabilities_row_ref,
-      probabilities.data(), static_cast<int>(probabilities.size()));
+  const auto reference = row_on_every_target<std::uint8_t>(
+      probabilities.size(), compact_probabilities_row, probabilities.data(),
+      static_cast<int>(probabilities.size()));
   for (std::size_t k = 0; k < probabilities.size(); ++k) {
     const double exponent = probabilities[k] > 0 ? -std::log2(probabilities[k]) : 1000;
     ASSERT_NEAR(reference[k] / 8.0, std::clamp(exponent, 0.0, 255 / 8.0), 0.5 / 8 + 1e-5);

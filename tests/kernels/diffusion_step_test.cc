@@ -7,9 +7,22 @@
 
 namespace vantage::kernels::diffusion_step_test {
 
-VANTAGE_ON_EVERY_TARGET(DiffusionStep);
+/// The equation in double; what rounding may add is a few parts in ten million.
+double plain_cell(const DiffusionRow& row, int x, int i) {
+  const int lanes = row.star.lanes;
+  const double here = row.star.centre[x * lanes + i];
+  const auto weight = [&](const float* weights, int at) {
+    return row.weights.are_given() ? double{weights[at]} : 1.0;
+  };
+  const double change = weight(row.weights.beside, x) * (row.star.left_of(x)[i] - here) +
+                        weight(row.weights.beside, x + 1) * (row.star.right_of(x)[i] - here) +
+                        weight(row.weights.above, x) * (row.star.up[x * lanes + i] - here) +
+                        weight(row.weights.below, x) * (row.star.down[x * lanes + i] - here);
+  const double pulled = double{row.pull} * (row.star.source[x * lanes + i] - here);
+  return here + double{row.step} * change + pulled;
+}
 
-TEST_P(DiffusionStep, EqualsReferenceExactly) {
+TEST(DiffusionStep, IsTheEquation) {
   unsigned seed = 1;
   for (const int columns : {1, 2, 3, 7}) {
     for (const int lanes : {16, 32, 48, 80, 128}) {
@@ -21,42 +34,20 @@ TEST_P(DiffusionStep, EqualsReferenceExactly) {
         row.star = rows.star();
         row.pull = pull;
         row.weights = weighted ? weights.star() : StarWeights{};
-        Image<float> expected(lanes * columns, 1);
-        Image<float> actual(lanes * columns, 1);
-        row.output = expected.row(0);
-        diffusion_row_ref(row);
-        row.output = actual.row(0);
-        diffusion_row(row);
-        for (int i = 0; i < lanes * columns; ++i) {
-          ASSERT_EQ(actual.at(i, 0), expected.at(i, 0)) << columns << "x" << lanes << " cell " << i;
-        }
+        std::vector<float> first;
+        for_each_target([&] {
+          Image<float> output(lanes * columns, 1);
+          row.output = output.row(0);
+          diffusion_row(row);
+          const std::vector<float> cells(row.output, row.output + output.width());
+          for (int i = 0; i < output.width(); ++i) {
+            const double expected = plain_cell(row, i / lanes, i % lanes);
+            ASSERT_NEAR(cells[i], expected, 1e-6 * 65025) << i;
+          }
+          ASSERT_TRUE(first.empty() || cells == first) << columns << "x" << lanes;
+          first = cells;
+        });
       }
-    }
-  }
-}
-
-TEST_P(DiffusionStep, PullsEachColumnTowardsItsNeighboursByTheirWeights) {
-  constexpr int kColumns = 3;
-  constexpr int kLanes = 16;
-  constexpr float kPull = 0.075F;
-  StarRows rows(kColumns, kLanes, kLanes, 0, 100, 1);
-  const RandomStarWeights weights(kColumns, 2);
-  DiffusionRow row;
-  row.star = rows.star();
-  row.pull = kPull;
-  row.weights = weights.star();
-  Image<float> output(kLanes * kColumns, 1);
-  row.output = output.row(0);
-  diffusion_row(row);
-  for (int x = 0; x < kColumns; ++x) {
-    for (int i = 0; i < kLanes; ++i) {
-      const double here = row.star.centre[x * kLanes + i];
-      const double change = row.weights.beside[x] * (row.star.left_of(x)[i] - here) +
-                            row.weights.beside[x + 1] * (row.star.right_of(x)[i] - here) +
-                            row.weights.above[x] * (row.star.up[x * kLanes + i] - here) +
-                            row.weights.below[x] * (row.star.down[x * kLanes + i] - here);
-      const double pulled = kPull * (row.star.source[x * kLanes + i] - here);
-      ASSERT_NEAR(output.at(x * kLanes + i, 0), here + 0.15 * change + pulled, 2e-5);
     }
   }
 }

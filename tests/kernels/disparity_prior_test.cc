@@ -43,8 +43,6 @@ struct PriorCase {
   }
 };
 
-using Kernel = void (*)(const DisparityPriorRow&, float*);
-
 template <typename Body>
 void for_each_case(bool likelihoods, const Body& body) {
   std::mt19937 random(71);
@@ -61,15 +59,16 @@ void for_each_case(bool likelihoods, const Body& body) {
 
 /// `of_candidate`(cell, shares, mean above least) in double.
 template <typename Expected>
-void expect_definition(Kernel kernel, bool likelihoods, const Expected& of_candidate) {
+void expect_definition(bool likelihoods, const Expected& of_candidate) {
   for_each_case(likelihoods, [&](const PriorCase& test) {
-    std::vector<float> cells = test.cells;
-    kernel(test.row, cells.data());
+    const auto cells = row_on_every_target<float>(test.cells.size(), [&](float* out) {
+      std::copy(test.cells.begin(), test.cells.end(), out);
+      (likelihoods ? likelihoods_with_prior_row : energies_with_prior_row)(test.row, out);
+    });
     for (int j = 0; j < test.row.columns; ++j) {
       const float* before = test.column(j);
       const double offset =
-          double{test.prior_px[static_cast<std::size_t>(j)]} * test.row.steps_per_px -
-          test.row.disparity_min;
+          double{test.prior_px[j]} * test.row.steps_per_px - test.row.disparity_min;
       const bool has_prior = offset >= 0 && offset <= test.row.count - 1;
       double contrast = 0;
       for (int i = 0; i < test.row.count; ++i) {
@@ -77,7 +76,7 @@ void expect_definition(Kernel kernel, bool likelihoods, const Expected& of_candi
       }
       contrast -= *std::min_element(before, before + test.row.count);
       for (int i = 0; i < test.row.lanes; ++i) {
-        const float actual = cells[static_cast<std::size_t>(j * test.row.lanes + i)];
+        const float actual = cells[j * test.row.lanes + i];
         if (!has_prior) {
           ASSERT_EQ(actual, before[i]);
         } else if (i < test.row.count) {
@@ -103,17 +102,12 @@ double likelihood(const DisparityPriorRow& row, double cell, double share, doubl
   return cell * std::exp(std::max<double>(-row.weight, -20 * std::log(2.0)) * share);
 }
 
-TEST(DisparityPriorReference, FollowsTheDefinitions) {
-  expect_definition(energies_with_prior_row_ref, false, energy);
-  expect_definition(likelihoods_with_prior_row_ref, true, likelihood);
+TEST(DisparityPrior, FollowsTheDefinitions) {
+  expect_definition(false, energy);
+  expect_definition(true, likelihood);
 }
 
 VANTAGE_ON_EVERY_TARGET(DisparityPrior);
-
-TEST_P(DisparityPrior, FollowsTheDefinitions) {
-  expect_definition(energies_with_prior_row, false, energy);
-  expect_definition(likelihoods_with_prior_row, true, likelihood);
-}
 
 /// Cells of a part of the candidates become what they become among all of them.
 TEST_P(DisparityPrior, LikelihoodsOfSomeCandidatesAreThoseOfAll) {
@@ -135,25 +129,6 @@ TEST_P(DisparityPrior, LikelihoodsOfSomeCandidatesAreThoseOfAll) {
       ASSERT_EQ(cells, part);
     }
   });
-}
-
-TEST_P(DisparityPrior, EqualsTheReferenceToTheBit) {
-  for (const bool likelihoods : {false, true}) {
-    for_each_case(likelihoods, [&](const PriorCase& test) {
-      std::vector<float> expected = test.cells;
-      GuardedRow<float> actual(test.cells.size(), 0, -12345.5F);
-      std::copy(test.cells.begin(), test.cells.end(), actual.data());
-      if (likelihoods) {
-        likelihoods_with_prior_row_ref(test.row, expected.data());
-        likelihoods_with_prior_row(test.row, actual.data());
-      } else {
-        energies_with_prior_row_ref(test.row, expected.data());
-        energies_with_prior_row(test.row, actual.data());
-      }
-      ASSERT_TRUE(actual.intact());
-      ASSERT_EQ(actual.values(), expected);
-    });
-  }
 }
 
 TEST_P(DisparityPrior, KeepsTheVertexOfAParabola) {

@@ -91,8 +91,8 @@ TEST(EdgeSnapping, NeverCrossesOrMeetsAnotherDiscontinuity) {
 /// EQUATIONS §5.1 place by place, written from the contract with lists instead of running limits.
 Row plain_snapped(const Edges& edges, int max_px, const Row& row) {
   const int width = static_cast<int>(row.size());
-  const auto at = [&](int x) { return row[static_cast<std::size_t>(x)]; };
-  const auto edge = [&](int x) { return edges[static_cast<std::size_t>(x)] != 0; };
+  const auto at = [&](int x) { return row[x]; };
+  const auto edge = [&](int x) { return edges[x] != 0; };
   std::vector<int> before;
   for (int b = 0; b + 1 < width; ++b) {
     if (!std::isnan(at(b)) && !std::isnan(at(b + 1)) && std::abs(at(b + 1) - at(b)) > 1) {
@@ -124,10 +124,10 @@ Row plain_snapped(const Edges& edges, int max_px, const Row& row) {
     }
     after.push_back(best);
     for (int x = best + 1; x <= b; ++x) {
-      result[static_cast<std::size_t>(x)] = at(b + 1);
+      result[x] = at(b + 1);
     }
     for (int x = b + 1; x <= best; ++x) {
-      result[static_cast<std::size_t>(x)] = at(b);
+      result[x] = at(b);
     }
   }
   return result;

@@ -6,8 +6,6 @@
 
 namespace vantage::kernels::energy_winner_test {
 
-VANTAGE_ON_EVERY_TARGET(EnergyProbability);
-
 VANTAGE_ON_EVERY_TARGET(EnergyWinner);
 
 constexpr std::int32_t kSentinel = -0x5A5A5A5B;
@@ -129,9 +127,7 @@ void for_each_row(const Body& body) {
   }
 }
 
-using Select = void (*)(const EnergyRow&, std::int32_t*, FixedEnergy*);
-
-void sweep(Select select) {
+TEST_P(EnergyWinner, IsTheFirstOfTheLeastWithAPartner) {
   int columns_with_none = 0;
   int columns_with_all = 0;
   for_each_row(
@@ -140,7 +136,7 @@ void sweep(Select select) {
         const auto columns = static_cast<std::size_t>(row.columns);
         GuardedRow<std::int32_t> winners(columns, random() % 5, kSentinel);
         GuardedRow<FixedEnergy> min(columns, random() % 5, kEnergySentinel);
-        select(row, winners.data(), min.data());
+        select_energy_winners_row(row, winners.data(), min.data());
         ASSERT_TRUE(winners.intact() && min.intact()) << c;
         for (std::size_t j = 0; j < columns; ++j) {
           const int x = begin + static_cast<int>(j);
@@ -153,11 +149,6 @@ void sweep(Select select) {
       });
   EXPECT_GT(columns_with_none, 1000);
   EXPECT_GT(columns_with_all, 1000);
-}
-
-TEST_P(EnergyWinner, IsTheFirstOfTheLeastWithAPartner) { sweep(select_energy_winners_row); }
-TEST(EnergyWinnerReference, IsTheFirstOfTheLeastWithAPartner) {
-  sweep(select_energy_winners_row_ref);
 }
 
 TEST_P(EnergyWinner, TiesGoToTheSmallestDisparity) {
@@ -211,7 +202,7 @@ TEST(EnergyDisparity, IsThatOfTheParabolaThroughWinnerAndNeighbours) {
         const auto columns = static_cast<std::size_t>(row.columns);
         std::vector<std::int32_t> winners(columns);
         std::vector<FixedEnergy> min(columns);
-        select_energy_winners_row_ref(row, winners.data(), min.data());
+        select_energy_winners_row(row, winners.data(), min.data());
         for (const bool refined : {false, true}) {
           GuardedRow<float> disparity_px(columns, random() % 5, kFloatSentinel);
           energy_disparity_row(row, winners.data(), refined, disparity_px.data());
@@ -255,7 +246,7 @@ TEST(EnergyDisparity, OfAParabolaIsItsLowestPoint) {
   EXPECT_EQ(disparity_px, 10.25F);
 }
 
-TEST_P(EnergyProbability, IsTheShareOfTheWinnersLikelihood) {
+TEST(EnergyProbability, IsTheShareOfTheWinnersLikelihood) {
   std::mt19937 random(65);
   for (const int lanes : kLaneCounts) {
     for (const float steps_per_nat : {3.0F, 64.0F, 256.0F, 1024.0F}) {
@@ -281,16 +272,12 @@ TEST_P(EnergyProbability, IsTheShareOfTheWinnersLikelihood) {
             static_cast<FixedEnergy>(random_int(random, 0, 1) * random_int(random, 0, max)));
       }
       min.back() = row.columns > 1 ? kMaxEnergy : 0;
-      GuardedRow<float> probability(min.size(), random() % 5, kFloatSentinel);
-      energy_probability_row(row, min.data(), steps_per_nat, probability.data());
-      ASSERT_TRUE(probability.intact());
-      std::vector<float> reference(min.size());
-      energy_probability_row_ref(row, min.data(), steps_per_nat, reference.data());
+      const auto probability = row_on_every_target<float>(min.size(), energy_probability_row, row,
+                                                          min.data(), steps_per_nat);
       for (int j = 0; j < row.columns; ++j) {
         const auto at = static_cast<std::size_t>(j);
-        const float actual = probability.values()[at];
+        const float actual = probability[at];
         ASSERT_EQ(std::isnan(actual), min[at] == kMaxEnergy);
-        ASSERT_EQ(std::isnan(reference[at]), min[at] == kMaxEnergy);
         if (min[at] == kMaxEnergy) {
           continue;
         }
@@ -299,30 +286,9 @@ TEST_P(EnergyProbability, IsTheShareOfTheWinnersLikelihood) {
           sum += std::exp((min[at] - row.cells[j * row.pitch + i]) / double{steps_per_nat});
         }
         ASSERT_NEAR(actual, 1 / sum, 1e-5 / sum) << lanes << " lanes, " << steps_per_nat;
-        ASSERT_NEAR(reference[at], 1 / sum, 1e-7 / sum) << lanes << " lanes, " << steps_per_nat;
       }
     }
   }
-}
-
-TEST(EnergyProbabilityOnAllTargets, IsIdentical) {
-  std::mt19937 random(66);
-  EnergyColumnsRow row{nullptr, 80, 30, 80};
-  Image<FixedEnergy> cells(80 * 30, 1);
-  std::generate_n(cells.row(0), 80 * 30, [&] { return static_cast<FixedEnergy>(random() % 2000); });
-  row.cells = cells.row(0);
-  const std::vector<FixedEnergy> min(30, 1);
-  std::vector<float> first;
-  for (const long long target : each_target()) {
-    force_target(target);
-    std::vector<float> probability(min.size());
-    energy_probability_row(row, min.data(), 200, probability.data());
-    if (first.empty()) {
-      first = probability;
-    }
-    EXPECT_EQ(probability, first) << target_name(target);
-  }
-  force_target(0);
 }
 
 }  // namespace vantage::kernels::energy_winner_test

@@ -59,31 +59,17 @@ double plain_sum(const EvidenceBlock& block) {
 constexpr int kColumnCounts[] = {0, 1, 2, 15, 16, 17, 31, 32, 33, 61, 64, 67, 128};
 constexpr int kRowCounts[] = {0, 1, 2, 16};
 
-VANTAGE_ON_EVERY_TARGET(EvidenceSumTest);
-
-TEST_P(EvidenceSumTest, EqualsTheReferenceBitForBit) {
-  std::mt19937 random(1);
+TEST(EvidenceSum, IsTheSumOfTheEquation) {
+  std::mt19937 random(2);
   for (const int columns : kColumnCounts) {
     for (const int rows : kRowCounts) {
       const RandomGradients reference(random, columns, rows, 1);
       const RandomGradients partner(random, columns, rows, 5);
       for (const EvidenceNorm norm : kAllEvidenceNorms) {
         const EvidenceBlock block = {reference.block(), partner.block(), columns, rows, norm};
-        EXPECT_EQ(evidence_sum(block), evidence_sum_ref(block)) << columns << 'x' << rows;
-      }
-    }
-  }
-}
-
-TEST(EvidenceSum, IsTheSumOfTheEquation) {
-  std::mt19937 random(2);
-  for (const int columns : kColumnCounts) {
-    for (const int rows : kRowCounts) {
-      const RandomGradients reference(random, columns, rows, 0);
-      const RandomGradients partner(random, columns, rows, 0);
-      for (const EvidenceNorm norm : kAllEvidenceNorms) {
-        const EvidenceBlock block = {reference.block(), partner.block(), columns, rows, norm};
-        EXPECT_NEAR(evidence_sum_ref(block), plain_sum(block), 1e-3 * (1 + columns * rows));
+        const double sum = evidence_sum(block);
+        EXPECT_NEAR(sum, plain_sum(block), 1e-3 * (1 + columns * rows));
+        for_each_target([&] { EXPECT_EQ(evidence_sum(block), sum) << columns << 'x' << rows; });
       }
     }
   }
@@ -95,7 +81,7 @@ TEST(EvidenceSum, EqualGradientsSupportWithTheirNorm) {
   double norms = 0;
   for (int row = 0; row < 3; ++row) {
     for (int j = 0; j < 77; ++j) {
-      norms += 2 * gradients.half_norm[static_cast<std::size_t>(row * gradients.stride + j)];
+      norms += 2 * gradients.half_norm[row * gradients.stride + j];
     }
   }
   EXPECT_NEAR(evidence_sum({gradients.block(), gradients.block(), 77, 3}), norms, 1e-2);

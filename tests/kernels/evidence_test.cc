@@ -6,8 +6,6 @@
 
 namespace vantage::kernels::evidence_test {
 
-VANTAGE_ON_EVERY_TARGET(Evidence);
-
 float draw_component(std::mt19937& random) {
   return random() % 6 == 0 ? 0 : static_cast<float>(random_int(random, -2550, 2550)) / 10;
 }
@@ -30,28 +28,27 @@ double norm(double x, double y, EvidenceNorm norm) {
   return std::abs(x);
 }
 
-TEST_P(Evidence, NegatedEvidence) {
+TEST(Evidence, NegatedEvidence) {
   for (const EvidenceNorm of : kAllEvidenceNorms) {
     for_each_feature_rows<float, 3>(draw_component, [&](const GradientPairs& row) {
-      const auto cells = equal_rows<float>(cell_count(row), negated_evidence_row,
-                                           negated_evidence_row_ref, row, of);
+      const auto cells = row_on_every_target<float>(cell_count(row), negated_evidence_row, row, of);
       for (int j = 0; j < row.columns; ++j) {
         for (int i = 0; i < row.lanes; ++i) {
           const int k = j * row.partner_step + i;
           double sum = 0;
           for (int c = 0; c < row.channels; ++c) {
-            const auto& [a, b] = row.channel[static_cast<std::size_t>(c)];
+            const auto& [a, b] = row.channel[c];
             sum += norm(double{a[0][j]} - b[0][k], double{a[1][j]} - b[1][k], of) -
                    (double{a[2][j]} + b[2][k]);
           }
-          ASSERT_NEAR(cells[static_cast<std::size_t>(j * row.lanes + i)], sum / row.channels, 2e-4);
+          ASSERT_NEAR(cells[j * row.lanes + i], sum / row.channels, 2e-4);
         }
       }
     });
   }
 }
 
-TEST_P(Evidence, Planes) {
+TEST(Evidence, Planes) {
   std::mt19937 random(2);
   for (const EvidenceNorm of : kAllEvidenceNorms) {
     for (const int width : {1, 3, 16, 17, 45}) {
@@ -60,18 +57,15 @@ TEST_P(Evidence, Planes) {
       std::vector<float> gy(padded);
       std::generate(gx.begin(), gx.end(), [&] { return draw_component(random); });
       std::generate(gy.begin(), gy.end(), [&] { return draw_component(random); });
-      std::vector<float> half_norm(padded);
-      std::vector<float> x = gx;
-      std::vector<float> y = gy;
-      evidence_planes_row({x.data(), y.data(), half_norm.data(), width}, 1.5F, of);
-      std::vector<float> ref_half_norm(padded);
-      std::vector<float> ref_x = gx;
-      std::vector<float> ref_y = gy;
-      evidence_planes_row_ref({ref_x.data(), ref_y.data(), ref_half_norm.data(), width}, 1.5F, of);
+      std::vector<float> x;
+      std::vector<float> y;
+      const auto half_norm = row_on_every_target<float>(padded, [&](float* out) {
+        x = gx;
+        y = gy;
+        evidence_planes_row({x.data(), y.data(), out, width}, 1.5F, of);
+        std::fill(out + width, out + padded, 0.0F);  // anything
+      });
       for (std::size_t k = 0; k < static_cast<std::size_t>(width); ++k) {
-        ASSERT_EQ(x[k], ref_x[k]);
-        ASSERT_EQ(y[k], ref_y[k]);
-        ASSERT_EQ(half_norm[k], ref_half_norm[k]);
         ASSERT_FLOAT_EQ(x[k], 1.5F * gx[k]);
         ASSERT_FLOAT_EQ(y[k], 1.5F * gy[k]);
         ASSERT_NEAR(half_norm[k], norm(gx[k], gy[k], of) / 2, 1e-4);
@@ -81,7 +75,7 @@ TEST_P(Evidence, Planes) {
 }
 
 // The octagon approximates the L2 norm within 3.96 % (5.17).
-TEST_P(Evidence, OctagonIsNearL2) {
+TEST(Evidence, OctagonIsNearL2) {
   double worst = 0;
   for (int step = 0; step < 1600; ++step) {
     const double angle = step * 2 * M_PI / 1600;
@@ -95,7 +89,7 @@ TEST_P(Evidence, OctagonIsNearL2) {
   EXPECT_GE(worst, .039);
 }
 
-TEST_P(Evidence, Likelihood) {
+TEST(Evidence, Likelihood) {
   std::mt19937 random(4);
   const auto draw = [&] { return static_cast<float>(random_int(random, -3000, 3000)) / 10; };
   for (const int direction : {-1, 1}) {
@@ -109,14 +103,10 @@ TEST_P(Evidence, Likelihood) {
           std::vector<float> costs(static_cast<std::size_t>(row.columns) * lanes);
           std::generate(costs.begin(), costs.end(), draw);
           const float sigma = random() % 2 == 0 ? 5.0F : 1e-30F;
-          const auto run = [&](auto kernel) {
-            return [&, kernel](float* out) {
-              std::copy(costs.begin(), costs.end(), out);
-              kernel(row, sigma, .1F, out);
-            };
-          };
-          const auto cells = equal_rows<float>(costs.size(), run(likelihood_of_evidence),
-                                               run(likelihood_of_evidence_ref));
+          const auto cells = row_on_every_target<float>(costs.size(), [&](float* out) {
+            std::copy(costs.begin(), costs.end(), out);
+            likelihood_of_evidence(row, sigma, .1F, out);
+          });
           for (int j = 0; j < row.columns; ++j) {
             const float* cost = costs.data() + static_cast<std::size_t>(j) * lanes;
             const auto inside = [&](int i) {

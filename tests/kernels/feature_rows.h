@@ -28,7 +28,7 @@ class FeatureRows {
     const int first_partner = order == PartnerOrder::kMirrored ? columns - 1 : 0;
     rows_.reserve(static_cast<std::size_t>(2 * kPlanes * channels));
     for (int c = 0; c < channels; ++c) {
-      auto& channel = pairs_.channel[static_cast<std::size_t>(c)];
+      auto& channel = pairs_.channel[c];
       for (std::size_t p = 0; p < kPlanes; ++p) {
         channel.reference[p] = add_row(random, columns, draw);
         channel.partner[p] = add_row(random, partners, draw) + first_partner;
@@ -45,7 +45,7 @@ class FeatureRows {
   const T* add_row(std::mt19937& random, int size, const Draw& draw) {
     rows_.emplace_back(static_cast<std::size_t>(size), random() % 5);
     for (int k = 0; k < size; ++k) {
-      rows_.back()[static_cast<std::size_t>(k)] = draw();
+      rows_.back()[k] = draw();
     }
     return rows_.back().data();
   }

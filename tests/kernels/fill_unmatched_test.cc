@@ -43,7 +43,7 @@ TEST(FillUnmatched, EqualsPlainTranscription) {
   for (int width = 1; width <= 70; ++width) {
     for (unsigned sparsity = 1; sparsity <= 6; ++sparsity) {
       for (const BackgroundSide side : {BackgroundSide::kLeft, BackgroundSide::kRight}) {
-        std::vector<std::uint8_t> unmatched(static_cast<std::size_t>(width));
+        std::vector<std::uint8_t> unmatched(width);
         std::vector<float> disparity_px(unmatched.size());
         for (std::size_t x = 0; x < unmatched.size(); ++x) {
           // Runs, at the borders too; any value but 0 marks.

@@ -23,9 +23,9 @@ struct Filled {
   }
 };
 
-/// What a kernel makes of a map, which it gets with margins that end where it may read no further.
-template <class Kernel>
-std::vector<float> medians(const Filled& map, Kernel kernel) {
+/// What the kernel makes of a map, which it gets with margins that end where it may read no
+/// further.
+std::vector<float> medians(const Filled& map) {
   constexpr int kReach = kFilledMedianReachPx;
   const int pitch = kFilledMedianMarginPx + map.width + kFilledMedianMarginPx;
   const auto size = static_cast<std::size_t>(pitch * (kReach + map.height + kReach));
@@ -55,13 +55,13 @@ std::vector<float> medians(const Filled& map, Kernel kernel) {
     std::copy_n(map.unmatched.data() + map.at(0, y), map.width, unmatched.data());
     GuardedRow<float> row(width, 1, -77);
     std::copy_n(map.disparity_px.data() + map.at(0, y), map.width, row.data());
-    kernel({.disparity_px = disparity_px.data() + place(0, y),
-            .disparity_pitch = pitch,
-            .pixels = pixels.data() + place(0, y) * kFilledPixelBytes,
-            .pixel_pitch = pitch * kFilledPixelBytes,
-            .unmatched = unmatched.data(),
-            .width = map.width},
-           row.data());
+    take_filled_medians_row({.disparity_px = disparity_px.data() + place(0, y),
+                             .disparity_pitch = pitch,
+                             .pixels = pixels.data() + place(0, y) * kFilledPixelBytes,
+                             .pixel_pitch = pitch * kFilledPixelBytes,
+                             .unmatched = unmatched.data(),
+                             .width = map.width},
+                            row.data());
     EXPECT_TRUE(row.intact());
     const std::vector<float> values = row.values();
     result.insert(result.end(), values.begin(), values.end());
@@ -117,7 +117,7 @@ void expect_equal_bits(const std::vector<float>& result, const std::vector<float
   }
 }
 
-/// Both kernels against the transcription.
+/// The kernel against the transcription.
 void expect_contract(const Filled& map, const std::string& what) {
   std::vector<float> expected;
   for (int y = 0; y < map.height; ++y) {
@@ -125,8 +125,7 @@ void expect_contract(const Filled& map, const std::string& what) {
       expected.push_back(expected_at(map, x, y));
     }
   }
-  expect_equal_bits(medians(map, take_filled_medians_row_ref), expected, what + ", plainly");
-  expect_equal_bits(medians(map, take_filled_medians_row), expected, what);
+  expect_equal_bits(medians(map), expected, what);
 }
 
 /// Disparities that make_value() gives, colours with `levels` levels a channel, and `unmatched` in
@@ -233,8 +232,7 @@ TEST_P(FilledMedian, WeighsSamplesExactly) {
       add(2, next);
     }
     EXPECT_LT(samples, kFilledMedianSamples * kFilledMedianSamples / 2);  // before the pixel
-    return medians(map,
-                   take_filled_medians_row)[map.at(kFilledMedianReachPx, kFilledMedianReachPx)];
+    return medians(map)[map.at(kFilledMedianReachPx, kFilledMedianReachPx)];
   };
   for (std::size_t difference = 0; weights[difference] > 0; ++difference) {
     EXPECT_EQ(median_against(difference, weights[difference]), 1) << difference;
@@ -263,13 +261,13 @@ TEST_P(FilledMedian, FollowsWhatLooksLikeThePixel) {
       map.disparity_px[map.at(x, y)] = y == 26 ? 9 : 2;
     }
   }
-  EXPECT_EQ(medians(map, take_filled_medians_row), right.disparity_px);
+  EXPECT_EQ(medians(map), right.disparity_px);
 }
 
 TEST_P(FilledMedian, KeepsPixelsThatNothingIsKnownAround) {
   const Filled map{
       3, 1, {kUnknown, kUnknown, kUnknown}, {1, 1, 1, 2, 2, 2, 3, 3, 3}, {255, 255, 255}};
-  for (const float value : medians(map, take_filled_medians_row)) {
+  for (const float value : medians(map)) {
     EXPECT_TRUE(std::isnan(value));
   }
 }

@@ -9,7 +9,7 @@ namespace vantage::kernels::flicker_sums_test {
 constexpr int kWidths[] = {1, 2, 3, 15, 16, 17, 64, 65, 1023, 1024, 1025, 20000};
 
 std::vector<std::uint8_t> random_bytes(std::mt19937& random, int width) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(width));
+  std::vector<std::uint8_t> bytes(width);
   for (std::uint8_t& byte : bytes) {
     byte = static_cast<std::uint8_t>(random());
   }
@@ -17,7 +17,7 @@ std::vector<std::uint8_t> random_bytes(std::mt19937& random, int width) {
 }
 
 std::vector<std::uint8_t> random_mask(std::mt19937& random, int width) {
-  std::vector<std::uint8_t> mask(static_cast<std::size_t>(width));
+  std::vector<std::uint8_t> mask(width);
   for (std::uint8_t& value : mask) {
     value = random() % 4 == 0 ? 0 : 255;
   }
@@ -32,8 +32,8 @@ TEST_P(FlickerSumsKernel, DisparityChange) {
   for (const int width : kWidths) {
     // Large differences everywhere must not overflow.
     for (const bool extreme : {false, true}) {
-      UnalignedRow<float> now(static_cast<std::size_t>(width), random() % 5);
-      UnalignedRow<float> before(static_cast<std::size_t>(width), random() % 5);
+      UnalignedRow<float> now(width, random() % 5);
+      UnalignedRow<float> before(width, random() % 5);
       for (std::size_t x = 0; x < now.size(); ++x) {
         now[x] = random() % 9 == 0 ? kUnknown : static_cast<float>(random() % 4000) / 64 - 20;
         before[x] = random() % 9 == 0   ? kUnknown

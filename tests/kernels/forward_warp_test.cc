@@ -89,7 +89,7 @@ TEST(ForwardWarp, OrderedWalkEqualsZBufferOnRandomMaps) {
     for (const double s : kOffsets) {
       for (int repeat = 0; repeat < 4; ++repeat) {
         // White noise in quarter pixels: as many collisions as can be. Without a limit no gaps.
-        std::vector<float> d(static_cast<std::size_t>(width));
+        std::vector<float> d(width);
         for (float& value : d) {
           const auto draw = random() % 161;
           value = draw == 0 ? kUnknownDisparity : static_cast<float>(draw) / 4 - 10;
@@ -120,30 +120,22 @@ TEST(ForwardWarp, SamplingGapsEqualZBufferOverAllSamples) {
   }
 }
 
-TEST(ForwardWarp, EqualOnEveryInstructionSetAndToReference) {
+TEST(ForwardWarp, EqualOnEveryInstructionSet) {
   std::mt19937 random(3);
   for (const int width : kAwkwardWidths) {
     for (const double s : kOffsets) {
       std::vector<float> d = random_disparities(random, width, -20, 60);
       d[random() % d.size()] = std::numeric_limits<float>::infinity();
       const std::size_t size = d.size();
-      Warped expected{std::vector<float>(size), std::vector<float>(size)};
+      const Warped expected = warp(d, s, 1.0F);
       const ForwardWarpRow row{d.data(), width, s, 1.0F};
-      forward_warp_row_ref(row, expected.disparity_px.data(), expected.source_column.data());
       for_each_target([&] {
         const Warped result = warp(d, s, 1.0F);
         std::vector<float> alone(size);
         forward_warp_row(row, alone.data(), nullptr);
-        for (std::size_t n = 0; n < size; ++n) {
-          const bool hole = std::isnan(expected.disparity_px[n]);
-          ASSERT_EQ(std::isnan(result.disparity_px[n]), hole);
-          ASSERT_EQ(std::isnan(alone[n]), hole);
-          if (!hole) {
-            ASSERT_EQ(result.disparity_px[n], expected.disparity_px[n]);
-            ASSERT_EQ(result.source_column[n], expected.source_column[n]);
-            ASSERT_EQ(alone[n], expected.disparity_px[n]);
-          }
-        }
+        ASSERT_TRUE(are_same(result.disparity_px, expected.disparity_px));
+        ASSERT_TRUE(are_same(result.source_column, expected.source_column));
+        ASSERT_TRUE(are_same(alone, expected.disparity_px));
       });
     }
   }

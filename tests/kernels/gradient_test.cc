@@ -4,14 +4,12 @@
 
 namespace vantage::kernels::gradient_test {
 
-VANTAGE_ON_EVERY_TARGET(Gradient);
-
 constexpr FilterTaps kFilters[] = {{0, 0, 1, 0, 0},
                                    {0, -1, 0, 1, 0},
                                    {-.1077F, -.2827F, 0, .2827F, .1077F},
                                    {.1F, .2F, .3F, -.4F, .5F}};
 
-TEST_P(Gradient, SeparableFilter) {
+TEST(Gradient, SeparableFilter) {
   std::mt19937 random(1);
   for (const int width : {1, 2, 12, 13, 16, 17, 50}) {
     for (const FilterTaps& down : kFilters) {
@@ -31,11 +29,11 @@ TEST_P(Gradient, SeparableFilter) {
         filter.along = along;
         filter.width = width;
         std::vector<float> work(static_cast<std::size_t>(width) + 48);
-        GuardedRow<float> filtered(static_cast<std::size_t>((width + 15) / 16 * 16), 1, -1);
-        separable_filter_row(filter, work.data(), filtered.data());
-        EXPECT_TRUE(filtered.intact());
-        std::vector<float> expected(static_cast<std::size_t>(width));
-        separable_filter_row_ref(filter, work.data(), expected.data());
+        const auto padded = static_cast<std::size_t>((width + 15) / 16 * 16);
+        const auto filtered = row_on_every_target<float>(padded, [&](float* out) {
+          separable_filter_row(filter, work.data(), out);
+          std::fill(out + width, out + padded, 0.0F);  // anything
+        });
         for (int x = 0; x < width; ++x) {
           double sum = 0;
           for (int v = -2; v <= 2; ++v) {
@@ -45,9 +43,7 @@ TEST_P(Gradient, SeparableFilter) {
               sum += double{down[row]} * along[column] * filter.rows[row][x + u];
             }
           }
-          const auto k = static_cast<std::size_t>(x);
-          ASSERT_EQ(filtered.values()[k], expected[k]);
-          ASSERT_NEAR(expected[k], sum, 3e-4);
+          ASSERT_NEAR(filtered[x], sum, 3e-4);
         }
       }
     }

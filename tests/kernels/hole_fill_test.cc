@@ -85,7 +85,7 @@ TEST(HoleFill, EqualsPlainDefinitionOnRandomRows) {
   std::mt19937 random(11);
   for (const int width : kAwkwardWidths) {
     for (int repeat = 0; repeat < 20; ++repeat) {
-      std::vector<float> d(static_cast<std::size_t>(width));
+      std::vector<float> d(width);
       bool hole = false;
       for (float& value : d) {
         hole = random() % 3 == 0 ? !hole : hole;
@@ -95,7 +95,7 @@ TEST(HoleFill, EqualsPlainDefinitionOnRandomRows) {
       for (int k = 0; k < 3 * width; ++k) {
         pixels.push_back(static_cast<std::uint16_t>(k));
       }
-      const auto at = [&](int x) { return d[static_cast<std::size_t>(x)]; };
+      const auto at = [&](int x) { return d[x]; };
       const auto known = [&](int x) { return x >= 0 && x < width && !std::isnan(at(x)); };
       std::vector<std::uint16_t> expected = pixels;
       for (int x = 0; x < width; ++x) {
@@ -124,8 +124,7 @@ TEST(HoleFill, EqualsPlainDefinitionOnRandomRows) {
         const int k = (std::abs(x - border) - 1) % (2 * run);
         const int source = border + (k < run ? k : 2 * run - 1 - k) * step;
         for (int c = 0; c < 3; ++c) {
-          expected[static_cast<std::size_t>(3 * x + c)] =
-              pixels[static_cast<std::size_t>(3 * source + c)];
+          expected[3 * x + c] = pixels[3 * source + c];
         }
       }
       fill_holes_row(HoleFillRow<std::uint16_t>{.pixels = pixels.data(),

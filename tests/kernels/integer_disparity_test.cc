@@ -8,7 +8,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// Values at and beside halves and limits, unknown ones among them.
 std::vector<float> disparities(std::mt19937& random, int width) {
-  std::vector<float> row(static_cast<std::size_t>(width));
+  std::vector<float> row(width);
   for (float& d : row) {
     const float at = static_cast<float>(random() % 65535) / 256 + 0.5F / 256;
     constexpr float kOthers[] = {0,         -0.499F / 256, 1e-30F,          kUnknownDisparity,
@@ -49,7 +49,7 @@ TEST(IntegerDisparity, EqualOnEveryInstructionSetAndToReference) {
           ASSERT_EQ(stored[x], expected[x]) << row[x];
         }
       });
-      row[static_cast<std::size_t>(fitting % width)] = 7;
+      row[fitting % width] = 7;
     }
   }
 }

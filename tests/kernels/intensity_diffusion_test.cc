@@ -13,8 +13,7 @@ std::vector<float> step(const std::vector<float>& centre, const float* up, const
   row.down = down;
   row.width = static_cast<int>(centre.size());
   row.contrast = 4;
-  GuardedRow<float> work(static_cast<std::size_t>(intensity_diffusion_work_floats(row.width)), 0,
-                         -1);
+  GuardedRow<float> work(intensity_diffusion_work_floats(row.width), 0, -1);
   GuardedRow<float> output(centre.size(), 3, -1);
   row.work = work.data();
   row.output = output.data();

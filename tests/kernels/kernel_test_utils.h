@@ -73,6 +73,16 @@ class UnalignedRow {
   std::size_t offset_;
 };
 
+/// Equal, or both no number.
+template <typename T>
+bool is_same(T a, T b) {
+  return a == b || (a != a && b != b);
+}
+template <typename T>
+bool are_same(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), is_same<T>);
+}
+
 /// A row that a kernel writes, between sentinels that it must leave alone.
 template <typename T>
 class GuardedRow {
@@ -123,6 +133,19 @@ std::vector<T> equal_rows(std::size_t size, const Kernel& kernel, const Referenc
   const auto expected = written_row(size, static_cast<T>(-99), reference, arguments...);
   EXPECT_EQ(written_row(size, static_cast<T>(77), kernel, arguments...), expected)
       << "row of " << size;
+  return expected;
+}
+
+/// The row that a kernel writes, which must be the same on every instruction set. Different
+/// sentinels show what it leaves out.
+template <typename T, typename Kernel, typename... Arguments>
+std::vector<T> row_on_every_target(std::size_t size, const Kernel& kernel,
+                                   const Arguments&... arguments) {
+  const auto expected = written_row(size, static_cast<T>(-99), kernel, arguments...);
+  for_each_target([&] {
+    EXPECT_TRUE(are_same(written_row(size, static_cast<T>(77), kernel, arguments...), expected))
+        << "row of " << size;
+  });
   return expected;
 }
 

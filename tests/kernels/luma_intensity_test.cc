@@ -12,7 +12,7 @@ TEST_P(LumaIntensity, AreTheRoundedLuma) {
   std::mt19937 random(72);
   for (const int channels : {1, 3, 4}) {
     for (const int width : {1, 2, 15, 16, 17, 31, 64, 65, 301}) {
-      UnalignedRow<std::uint8_t> pixels(static_cast<std::size_t>(width * channels), random() % 5);
+      UnalignedRow<std::uint8_t> pixels(width * channels, random() % 5);
       for (std::size_t k = 0; k < pixels.size(); ++k) {
         pixels[k] = random() % 4 == 0 ? 255 : static_cast<std::uint8_t>(random());
       }
@@ -23,7 +23,7 @@ TEST_P(LumaIntensity, AreTheRoundedLuma) {
         const std::uint8_t* pixel = pixels.data() + static_cast<std::ptrdiff_t>(x) * channels;
         const double luma =
             channels == 1 ? pixel[0] : 0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2];
-        ASSERT_NEAR(reference[static_cast<std::size_t>(x)], luma, channels == 1 ? 0 : 1);
+        ASSERT_NEAR(reference[x], luma, channels == 1 ? 0 : 1);
       }
     }
   }
@@ -33,7 +33,7 @@ TEST_P(LumaIntensity, LumaIsNotRounded) {
   std::mt19937 random(73);
   for (const int channels : {3, 4}) {
     for (const int width : {1, 2, 15, 16, 17, 31, 64, 65, 301}) {
-      UnalignedRow<std::uint8_t> pixels(static_cast<std::size_t>(width * channels), random() % 5);
+      UnalignedRow<std::uint8_t> pixels(width * channels, random() % 5);
       for (std::size_t k = 0; k < pixels.size(); ++k) {
         pixels[k] = random() % 4 == 0 ? 255 : static_cast<std::uint8_t>(random());
       }
@@ -41,8 +41,7 @@ TEST_P(LumaIntensity, LumaIsNotRounded) {
                                                luma_row_ref, pixels.data(), width, channels);
       for (int x = 0; x < width; ++x) {
         const std::uint8_t* pixel = pixels.data() + static_cast<std::ptrdiff_t>(x) * channels;
-        ASSERT_NEAR(reference[static_cast<std::size_t>(x)],
-                    0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2], 1e-4);
+        ASSERT_NEAR(reference[x], 0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2], 1e-4);
       }
     }
   }

@@ -14,7 +14,7 @@ TEST_P(MapEnlargement, EqualsReference) {
     const auto columns = static_cast<std::size_t>((width + 1) / 2);
     std::vector<float> own(columns), beside(columns);
     std::vector<std::uint8_t> own_grey(columns), beside_grey(columns);
-    std::vector<std::uint8_t> grey(static_cast<std::size_t>(width));
+    std::vector<std::uint8_t> grey(width);
     for (std::size_t x = 0; x < columns; ++x) {
       // Steps of a quarter: some differ by exactly the limit.
       const auto draw = [&] {

@@ -15,7 +15,7 @@ TEST(NearestLookup, TakesTheValueAtEachPlaceAndNothingElsewhere) {
   std::vector<PixelPlace> places{kNoPlace};
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      map[static_cast<std::size_t>(y * kStride + x)] = static_cast<float>(10 * y + x);
+      map[y * kStride + x] = static_cast<float>(10 * y + x);
       places.insert(places.begin(), pixel_place(x, y));
     }
   }

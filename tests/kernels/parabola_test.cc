@@ -45,13 +45,13 @@ double refined_disparity(const WinnerCase& c, const WinnerCells& cells, int x, i
 /// where they are flat: there the rounding of means decides. A winner's never are.)
 std::vector<std::int32_t> draw_winners(std::mt19937& random, const WinnerCase& c,
                                        const WinnerCells& cells, const WinnerRow& row) {
-  std::vector<std::int32_t> winners(static_cast<std::size_t>(c.width));
-  select_winners_row_ref(row, winners.data());
+  std::vector<std::int32_t> winners(c.width);
+  select_winners_row(row, winners.data());
   for (int x = 0; x < c.width; ++x) {
     const int any = random_int(random, 0, c.count - 1);
     if (random() % 2 == 0 && c.counts(x, any) &&
         (!has_neighbours(c, x, any) || Energies(c, cells, x, any).curvature() != 0)) {
-      winners[static_cast<std::size_t>(x)] = any;
+      winners[x] = any;
     }
   }
   return winners;
@@ -128,8 +128,8 @@ void sweep(CellKernel kernel) {
         probabilities ? CellKind::kProbability : kEnergyKinds[random() % std::size(kEnergyKinds)]);
     const int begin = random_int(random, 0, c.width - 1);
     const CellRow row = cells.row(c, begin, random_int(random, begin + 1, c.width), probabilities);
-    std::vector<std::int32_t> winners(static_cast<std::size_t>(row.columns));
-    select_cell_winners_row_ref(row, {winners.data(), nullptr, nullptr});
+    std::vector<std::int32_t> winners(row.columns);
+    select_cell_winners_row(row, {winners.data(), nullptr, nullptr});
     GuardedRow<float> disparity_px(winners.size(), random() % 5, kSentinel);
     kernel(row, winners.data(), disparity_px.data());
     GuardedRow<float> integer_px(winners.size(), random() % 5, kSentinel);
@@ -166,8 +166,8 @@ TEST(ParabolaOfProbabilities, IsTheSameOnEveryInstructionSet) {
   c.count = 20;
   const FloatCells cells(random, c, CellKind::kProbability);
   const CellRow row = cells.row(c, 0, c.width, true);
-  std::vector<std::int32_t> winners(static_cast<std::size_t>(c.width));
-  select_cell_winners_row_ref(row, {winners.data(), nullptr, nullptr});
+  std::vector<std::int32_t> winners(c.width);
+  select_cell_winners_row(row, {winners.data(), nullptr, nullptr});
   std::vector<float> first;
   for (const long long target : each_target()) {
     force_target(target);

@@ -4,9 +4,7 @@
 
 namespace vantage::kernels::partner_choice_test {
 
-VANTAGE_ON_EVERY_TARGET(PartnerChoice);
-
-TEST_P(PartnerChoice, IsTheMeanOfTheBetterHalfThatSeesTheCandidate) {
+TEST(PartnerChoice, IsTheMeanOfTheBetterHalfThatSeesTheCandidate) {
   std::mt19937 random(9);
   for (const int partners : {1, 2, 3, 4, 7, 64}) {
     for (const int count : {1, 15, 16, 33}) {
@@ -19,7 +17,7 @@ TEST_P(PartnerChoice, IsTheMeanOfTheBetterHalfThatSeesTheCandidate) {
           const auto share = static_cast<float>(1 + random() % 1000U) / 1000;
           cell = likelihoods ? share : 100 * share - 30;
         }
-        std::vector<CandidateRange> seen(static_cast<std::size_t>(partners * columns));
+        std::vector<CandidateRange> seen(partners * columns);
         for (CandidateRange& range : seen) {
           range = {random_int(random, 0, count), random_int(random, 0, count)};
         }
@@ -27,17 +25,12 @@ TEST_P(PartnerChoice, IsTheMeanOfTheBetterHalfThatSeesTheCandidate) {
                                seen.data(),  partners,
                                columns,      lanes,
                                count};
-        const auto run = [&](auto kernel) {
-          std::vector<float> chosen(static_cast<std::size_t>(columns * lanes));
-          kernel(row, chosen.data());
-          return chosen;
-        };
-        const auto actual = likelihoods ? run(choose_likelihoods_row) : run(choose_energies_row);
-        ASSERT_EQ(actual,
-                  likelihoods ? run(choose_likelihoods_row_ref) : run(choose_energies_row_ref));
+        const auto actual = row_on_every_target<float>(
+            static_cast<std::size_t>(columns * lanes),
+            likelihoods ? choose_likelihoods_row : choose_energies_row, row);
         for (int j = 0; j < columns; ++j) {
           for (int i = 0; i < lanes; ++i) {
-            const float cell = actual[static_cast<std::size_t>(j * lanes + i)];
+            const float cell = actual[j * lanes + i];
             if (i >= count) {
               ASSERT_TRUE(likelihoods ? cell == 0 : std::isfinite(cell));
               continue;
@@ -48,7 +41,7 @@ TEST_P(PartnerChoice, IsTheMeanOfTheBetterHalfThatSeesTheCandidate) {
               const double value = cells[static_cast<std::size_t>(p) * stride +
                                          static_cast<std::size_t>(j * lanes + i)];
               of_all.push_back(likelihoods ? -std::log(value) : value);
-              const auto [begin, end] = seen[static_cast<std::size_t>(p * columns + j)];
+              const auto [begin, end] = seen[p * columns + j];
               if (i >= begin && i < end) {
                 of_seen.push_back(of_all.back());
               }

@@ -135,8 +135,8 @@ TEST(PhotographPosition, WhatTheCameraDoesNotSeeIsNowhere) {
   Row row(random, 40, 2, 2);
   photograph_positions_row(tables.table(2, 2), row.in_place(), row.count());
   for (int n = 0; n < row.count(); ++n) {
-    EXPECT_TRUE(std::isnan(row.disparity_px[static_cast<std::size_t>(n)]));
-    EXPECT_EQ(row.column[static_cast<std::size_t>(n)], 0);
+    EXPECT_TRUE(std::isnan(row.disparity_px[n]));
+    EXPECT_EQ(row.column[n], 0);
   }
 }
 

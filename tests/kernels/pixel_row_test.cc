@@ -14,22 +14,19 @@ TYPED_TEST(PixelRow, WidensPixelsAndClearsTheRest) {
   for (const int width : kAwkwardWidths) {
     for (const int channels : {1, 3, 4}) {
       // Of exactly the size that may be read: the address sanitizer sees any excess.
-      std::vector<TypeParam> pixels(static_cast<std::size_t>(width * channels));
+      std::vector<TypeParam> pixels(width * channels);
       for (TypeParam& value : pixels) {
         value = static_cast<TypeParam>(random() % 60000);
       }
       const int lanes = pixel_lanes(channels);
       const int margin = kRowMarginPx * lanes;
-      std::vector<float> expected(static_cast<std::size_t>(width * lanes + 2 * margin), 0.0F);
+      std::vector<float> expected(width * lanes + 2 * margin, 0.0F);
       for (int x = 0; x < width; ++x) {
         for (int c = 0; c < channels; ++c) {
-          expected[static_cast<std::size_t>(margin + x * lanes + c)] =
-              static_cast<float>(pixels[static_cast<std::size_t>(x * channels + c)]);
+          expected[margin + x * lanes + c] = static_cast<float>(pixels[x * channels + c]);
         }
       }
-      std::vector<float> row(expected.size(), -1.0F);
-      load_pixel_row_ref(pixels.data(), width, channels, row.data() + margin);
-      ASSERT_EQ(row, expected);
+      std::vector<float> row;
       for_each_target([&] {
         row.assign(expected.size(), -1.0F);
         load_pixel_row(pixels.data(), width, channels, row.data() + margin);

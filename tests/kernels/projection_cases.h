@@ -80,9 +80,8 @@ inline std::vector<float> random_map(std::mt19937& random, int width, int height
       row = random_disparities(random, width, 0, 12);
     }
     for (int x = 0; x < width; ++x) {
-      const float offset = offsets[static_cast<std::size_t>(y)];
-      map[static_cast<std::size_t>(y * width + x)] =
-          row[static_cast<std::size_t>(x)] + (std::isnan(offset) ? 0.0F : 0.25F * offset);
+      const float offset = offsets[y];
+      map[y * width + x] = row[x] + (std::isnan(offset) ? 0.0F : 0.25F * offset);
     }
   }
   return map;

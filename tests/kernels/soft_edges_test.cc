@@ -75,10 +75,7 @@ TEST(OutlineShares, EqualThePlainDefinitionOnEveryInstructionSet) {
           const double of_left = x > 0 ? plain_share(surfaces.row, x, x - 1) : 0;
           const double of_right = x + 1 < width ? plain_share(surfaces.row, x, x + 1) : 0;
           expected_outlines +=
-              x + 1 < width && std::abs(surfaces.d[static_cast<std::size_t>(x)] -
-                                        surfaces.d[static_cast<std::size_t>(x + 1)]) > 1
-                  ? 1
-                  : 0;
+              x + 1 < width && std::abs(surfaces.d[x] - surfaces.d[x + 1]) > 1 ? 1 : 0;
           ASSERT_NEAR(shares[2 * static_cast<std::size_t>(x)], 256 * of_left, 0.501) << x;
           ASSERT_NEAR(shares[2 * static_cast<std::size_t>(x) + 1], 256 * of_right, 0.501) << x;
         }
@@ -140,14 +137,13 @@ TYPED_TEST(MixOutlines, EqualThePlainSum) {
       for (int x = 0; x < width; ++x) {
         for (int c = 0; c < channels; ++c) {
           const auto value = [&](int column) {
-            return static_cast<double>(before[static_cast<std::size_t>(column * channels + c)]);
+            return static_cast<double>(before[column * channels + c]);
           };
           double sum = value(x);
           const auto k = static_cast<std::size_t>(2 * x);
           sum += shares[k] == 0 ? 0 : shares[k] / 256.0 * (value(x - 1) - value(x));
           sum += shares[k + 1] == 0 ? 0 : shares[k + 1] / 256.0 * (value(x + 1) - value(x));
-          ASSERT_NEAR(static_cast<double>(pixels[static_cast<std::size_t>(x * channels + c)]), sum,
-                      tolerance);
+          ASSERT_NEAR(static_cast<double>(pixels[x * channels + c]), sum, tolerance);
         }
       }
     }

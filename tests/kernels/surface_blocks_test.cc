@@ -31,8 +31,8 @@ struct PixelMap {
       }
     }
   }
-  float& at(int x, int y) { return px[static_cast<std::size_t>(y)].data()[x]; }
-  std::uint8_t& mask(int x, int y) { return unmatched[static_cast<std::size_t>(y)].data()[x]; }
+  float& at(int x, int y) { return px[y].data()[x]; }
+  std::uint8_t& mask(int x, int y) { return unmatched[y].data()[x]; }
   SurfaceBlockRow row(int y) {
     const bool has_lower = y + 1 < height;
     return {.upper_px = &at(0, y),
@@ -60,7 +60,7 @@ std::vector<std::vector<std::int16_t>> fit(PixelMap& map, int radius_px,
   };
   std::vector<std::vector<std::int16_t>> blocks;
   for (int row = 0; row < rows; ++row) {
-    GuardedRow<std::int16_t> values(static_cast<std::size_t>(columns), 1, -99);
+    GuardedRow<std::int16_t> values(columns, 1, -99);
     kernels.block_row(map.row(2 * row), kFormat, values.data());
     EXPECT_TRUE(values.intact());
     blocks.push_back(values.values());

@@ -39,7 +39,7 @@ double integrated(const Source& source, double u, double v, double q, bool splin
     const int column =
         std::clamp(static_cast<int>(std::floor(x + 0.5)), 0, source.source.width - 1);
     const int line = std::clamp(static_cast<int>(std::floor(y + 0.5)), 0, source.source.height - 1);
-    const double d = source.d[static_cast<std::size_t>(line * source.source.width + column)];
+    const double d = source.d[line * source.source.width + column];
     return std::abs(d - at.disparity_px) <= 1 ? 1.0 : 0.0;
   };
   // Weights of displacements: of one uniform variable, or of the sum of two.

@@ -40,12 +40,8 @@ struct Scene {
     }
   }
 
-  [[nodiscard]] T pixel(int x, int y, int c) const {
-    return pixels[static_cast<std::size_t>(y * stride + x * channels + c)];
-  }
-  [[nodiscard]] float at(int x, int y) const {
-    return map[static_cast<std::size_t>(y * width + x)];
-  }
+  [[nodiscard]] T pixel(int x, int y, int c) const { return pixels[y * stride + x * channels + c]; }
+  [[nodiscard]] float at(int x, int y) const { return map[y * width + x]; }
 
   void add(double x, double y, float d) {
     column.push_back(static_cast<std::int32_t>(std::floor(x)));
@@ -196,13 +192,13 @@ TYPED_TEST(SurfaceFetch, InOneRowIsTheFetchAlongIt) {
       }
       const int lanes = pixel_lanes(channels);
       const int y = random_int(random, 0, height - 1);
-      std::vector<float> pixels(static_cast<std::size_t>((width + 2 * kRowMarginPx) * lanes));
+      std::vector<float> pixels((width + 2 * kRowMarginPx) * lanes);
       load_pixel_row(scene.pixels.data() + y * scene.stride, width, channels,
                      pixels.data() + kRowMarginPx * lanes);
       const float* map_row = scene.map.data() + y * width;
       const RowWithMargins map(std::vector<float>(map_row, map_row + width), 1, kUnknownDisparity);
       const double s = 0.37;
-      std::vector<float> warped(static_cast<std::size_t>(width));
+      std::vector<float> warped(width);
       for (int n = 0; n < width; ++n) {
         // A disparity that one of the two pixels around the position has.
         const float d = scene.at(std::clamp(n + random_int(random, -1, 1), 0, width - 1), y);
@@ -212,8 +208,8 @@ TYPED_TEST(SurfaceFetch, InOneRowIsTheFetchAlongIt) {
                  std::abs(scene.at(static_cast<int>(column), y) - d) <= 1;
         };
         const bool is_on = seen(std::floor(x)) || seen(std::floor(x) + 1);
-        warped[static_cast<std::size_t>(n)] = is_on ? d : kUnknownDisparity;
-        scene.add(x, y, warped[static_cast<std::size_t>(n)]);
+        warped[n] = is_on ? d : kUnknownDisparity;
+        scene.add(x, y, warped[n]);
       }
       std::vector<float> expected(scene.values());
       fetch_bicubic_row({.pixels = pixels.data() + kRowMarginPx * lanes,
@@ -239,10 +235,9 @@ TEST(SurfaceFetchColours, DoesNotMixSurfaces) {
   const auto is_front = [](double x, double y) { return std::hypot(x - 20, y - 15) < 8; };
   for (int y = 0; y < 30; ++y) {
     for (int x = 0; x < 40; ++x) {
-      scene.map[static_cast<std::size_t>(y * 40 + x)] = is_front(x, y) ? 8.0F : 0.0F;
+      scene.map[y * 40 + x] = is_front(x, y) ? 8.0F : 0.0F;
       for (int c = 0; c < 3; ++c) {
-        scene.pixels[static_cast<std::size_t>(y * scene.stride + x * 3 + c)] =
-            is_front(x, y) ? 200 : 50;
+        scene.pixels[y * scene.stride + x * 3 + c] = is_front(x, y) ? 200 : 50;
       }
     }
   }

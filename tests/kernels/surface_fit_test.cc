@@ -44,9 +44,7 @@ struct MarginMap {
   [[nodiscard]] float at(int x, int y) {
     return format.middle_px + static_cast<float>(sample(x, y)) / format.units_per_px();
   }
-  std::int16_t& sample(int x, int y) {
-    return memory[static_cast<std::size_t>((y + radius_px) * pitch + x + radius_px)];
-  }
+  std::int16_t& sample(int x, int y) { return memory[(y + radius_px) * pitch + x + radius_px]; }
   [[nodiscard]] bool is_matched(int x, int y) {
     return x >= 0 && y >= 0 && x < width && y < height && sample(x, y) != kNoSurface;
   }
@@ -79,12 +77,11 @@ constexpr float kMinPx = -0.75F;
 constexpr float kMaxPx = 2.0F;
 
 /// Fits a row within limits.
-template <decltype(fit_surface_row)* kFit>
 void limited_row(const SurfaceRow& row, float* fitted_px) {
   SurfaceRow limited = row;
   limited.min_px = kMinPx;
   limited.max_px = kMaxPx;
-  kFit(limited, fitted_px);
+  fit_surface_row(limited, fitted_px);
 }
 
 /// Whether `limited` is `row` but for the limits. Pixels that keep what they are need none, as
@@ -180,7 +177,7 @@ double plane_over(MarginMap& map, int x, int y, Rounding rounding) {
 
 VANTAGE_ON_EVERY_TARGET(SurfaceFit);
 
-TEST_P(SurfaceFit, EqualsPlainTranscription) {
+TEST(SurfaceFit, EqualsPlainTranscription) {
   std::mt19937 random(51);
   double sum_of_rounding = 0;
   int pixels = 0;
@@ -197,12 +194,14 @@ TEST_P(SurfaceFit, EqualsPlainTranscription) {
       });
       for (int y = 0; y < height; ++y) {
         const std::vector<float> simd = fitted(map, y, fit_surface_row);
-        ASSERT_EQ(simd, fitted(map, y, fit_surface_row_ref)) << "radius " << radius;
-        const std::vector<float> limited = fitted(map, y, limited_row<fit_surface_row>);
-        ASSERT_EQ(limited, fitted(map, y, limited_row<fit_surface_row_ref>));
+        const std::vector<float> limited = fitted(map, y, limited_row);
+        for_each_target([&] {
+          ASSERT_EQ(fitted(map, y, fit_surface_row), simd) << "radius " << radius;
+          ASSERT_EQ(fitted(map, y, limited_row), limited);
+        });
         ASSERT_TRUE(is_limited(map, y, simd, limited));
         for (int x = 0; x < width; ++x) {
-          const float value = simd[static_cast<std::size_t>(x)];
+          const float value = simd[x];
           if (!map.is_matched(x, y)) {
             ASSERT_EQ(value, kBefore);
             continue;
@@ -238,7 +237,7 @@ TEST_P(SurfaceFit, PlanesStayUpToTheBorder) {
       const std::vector<float> row = fitted(map, y, fit_surface_row);
       for (int x = 0; x < map.width; ++x) {
         if (map.is_matched(x, y)) {
-          ASSERT_NEAR(row[static_cast<std::size_t>(x)], plane(x, y), kSamplePx) << x << ", " << y;
+          ASSERT_NEAR(row[x], plane(x, y), kSamplePx) << x << ", " << y;
         }
       }
     }
@@ -255,7 +254,7 @@ TEST_P(SurfaceFit, SurfacesAcrossADepthEdgeHaveNoSay) {
     for (int y = 0; y < map.height; ++y) {
       const std::vector<float> row = fitted(map, y, fit_surface_row);
       for (int x = 0; x < map.width; ++x) {
-        ASSERT_NEAR(row[static_cast<std::size_t>(x)], planes(x, y), kSamplePx) << x << ", " << y;
+        ASSERT_NEAR(row[x], planes(x, y), kSamplePx) << x << ", " << y;
       }
     }
   }
@@ -272,7 +271,7 @@ TEST_P(SurfaceFit, StepsBecomeThePlaneTheyStandFor) {
     const std::vector<float> row = fitted(map, y, fit_surface_row);
     for (int x = 0; x < map.width; ++x) {
       squares_before += std::pow(map.at(x, y) - plane(x, y), 2);
-      squares_after += std::pow(row[static_cast<std::size_t>(x)] - plane(x, y), 2);
+      squares_after += std::pow(row[x] - plane(x, y), 2);
     }
   }
   EXPECT_LT(squares_after, squares_before / 16);
@@ -309,7 +308,7 @@ TEST_P(SurfaceFit, EndsOfTheRangeAreLikeItsMiddle) {
   }
 }
 
-TEST_P(SurfaceFit, SamplesAreNearestSteps) {
+TEST(SurfaceFit, SamplesAreNearestSteps) {
   std::vector<float> px;
   std::vector<std::uint8_t> unmatched;
   for (int i = 0; i < 77; ++i) {
@@ -320,9 +319,8 @@ TEST_P(SurfaceFit, SamplesAreNearestSteps) {
   px[2] = 30.5F + 1.5F / 64;
   px[3] = 1e6F;
   px[4] = -1e6F;
-  const auto reference =
-      equal_rows<std::int16_t>(px.size(), surface_sample_row, surface_sample_row_ref, px.data(),
-                               unmatched.data(), 77, kFormat);
+  const auto reference = row_on_every_target<std::int16_t>(px.size(), surface_sample_row, px.data(),
+                                                           unmatched.data(), 77, kFormat);
   EXPECT_EQ(std::vector<int>(reference.begin(), reference.begin() + 5),
             (std::vector<int>{kNoSurface, 0, 2, 31359, -31359}));
   EXPECT_EQ(reference[39], std::lround(31.7));
@@ -354,7 +352,7 @@ TEST(SurfaceFormats, SumsFit16Bits) {
       int wuu = 0;
       for (int j = -lattice.steps; j <= lattice.steps; ++j) {
         for (int i = -lattice.steps; i <= lattice.steps; ++i) {
-          const int share = weights.share[static_cast<std::size_t>(i * i + j * j)];
+          const int share = weights.share[i * i + j * j];
           int largest = 0;
           for (int e = 0; e < weights.reach; ++e) {
             largest = std::max(largest, (((weights.reach - e) * share) >> 16) * e);

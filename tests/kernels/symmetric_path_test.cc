@@ -75,7 +75,7 @@ long minimum_from(const Scene& scene, int left, int right) {
   const int candidate = left - right - row.disparity_min;
   if (left < row.width && right < row.width && candidate >= 0 && candidate < row.count) {
     const auto at = [&](const std::vector<StepEnergy>& cells, int x) {
-      return cells[static_cast<std::size_t>(x * row.lanes + candidate)];
+      return cells[x * row.lanes + candidate];
     };
     if (at(scene.left, left) != kNeverMatched && at(scene.right, right) != kNeverMatched) {
       min = std::min(min, at(scene.left, left) + at(scene.right, right) + row.match_offset +
@@ -92,14 +92,14 @@ long total_of(const Scene& scene, const Matches& matches) {
   int last_right = -1;
   int matched = 0;
   for (int x = 0; x < row.width; ++x) {
-    const int candidate = matches.left[static_cast<std::size_t>(x)];
+    const int candidate = matches.left[x];
     if (candidate == kNoWinner) {
       continue;
     }
     const int right = x - row.disparity_min - candidate;
     EXPECT_GT(right, last_right);
     EXPECT_LT(right, row.width);
-    EXPECT_EQ(matches.right[static_cast<std::size_t>(right)], candidate);
+    EXPECT_EQ(matches.right[right], candidate);
     last_right = right;
     ++matched;
     total += row.cost(x, candidate);

@@ -15,7 +15,7 @@ inline const std::vector<int> kAwkwardWidths = {1,  2,  3,  4,  5,  7,  8,   9, 
 /// Piecewise smooth disparities in quarter pixels with jumps and unknown stretches, as maps have.
 inline std::vector<float> random_disparities(std::mt19937& random, int width, float min,
                                              float max) {
-  std::vector<float> row(static_cast<std::size_t>(width));
+  std::vector<float> row(width);
   std::uniform_real_distribution<float> level(min, max);
   std::uniform_real_distribution<float> slope(-1.2F, 1.2F);
   float value = level(random);

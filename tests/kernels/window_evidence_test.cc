@@ -14,8 +14,8 @@ struct Inputs {
     constexpr int kCandidates = 40;
     const int pixels = side * (columns + 1);
     for (std::size_t i = 0; i < 2 * kMaxRayCensusBytes; ++i) {
-      reference[i].resize(static_cast<std::size_t>(pixels));
-      partner[i].resize(static_cast<std::size_t>(pixels + kCandidates + 32));
+      reference[i].resize(pixels);
+      partner[i].resize(pixels + kCandidates + 32);
       for (auto* bytes : {&reference[i], &partner[i]}) {
         for (std::uint8_t& byte : *bytes) {
           // Few bits: distances below and above 16.
@@ -70,8 +70,8 @@ TEST_P(WindowEvidence, EqualsReference) {
         }
         std::array<std::vector<WindowCells>, kWindows> evidence, expected;
         for (std::size_t q = 0; q < kWindows; ++q) {
-          evidence[q].resize(static_cast<std::size_t>(columns));
-          expected[q].resize(static_cast<std::size_t>(columns));
+          evidence[q].resize(columns);
+          expected[q].resize(columns);
         }
         window_evidence_row(inputs.row, by_distance, {evidence[0].data(), evidence[1].data()});
         window_evidence_row_ref(inputs.row, by_distance, {expected[0].data(), expected[1].data()});

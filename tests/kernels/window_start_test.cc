@@ -30,7 +30,7 @@ TEST_P(WindowStart, EqualsReference) {
     std::vector<WindowCells> support(size), expected(size);
     window_start_row(coarse, support.data());
     window_start_row_ref(coarse, expected.data());
-    support.resize(static_cast<std::size_t>(columns));
+    support.resize(columns);
     expected.resize(support.size());
     EXPECT_EQ(support, expected);
   }
@@ -46,7 +46,7 @@ TEST_P(WindowStart, InterpolatesBetweenCoarseCandidates) {
                    support);
   const std::array<int, kWindowCandidates> expected = {84, 79, 74, 70, 65, 60, 55, 50};
   for (int k = 0; k < kWindowCandidates; ++k) {
-    EXPECT_EQ(window_cell(support[0], k), expected[static_cast<std::size_t>(k)]) << k;
+    EXPECT_EQ(window_cell(support[0], k), expected[k]) << k;
   }
 }
 
@@ -68,7 +68,7 @@ TEST_P(WindowStart, SecondWinnersEqualReference) {
     std::vector<std::int16_t> second(size), expected(size);
     second_winners_row(rows, columns, second.data());
     second_winners_row_ref(rows, columns, expected.data());
-    second.resize(static_cast<std::size_t>(columns));
+    second.resize(columns);
     expected.resize(second.size());
     EXPECT_EQ(second, expected);
   }

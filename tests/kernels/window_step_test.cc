@@ -117,7 +117,7 @@ Rows stepped(void (*kernel)(const WindowStepRow&, const std::array<WindowCells*,
              const WindowStepRow& row) {
   Rows rows;
   for (auto& cells : rows) {
-    cells.assign(static_cast<std::size_t>(row.columns + kWindowMargin), 77);
+    cells.assign(row.columns + kWindowMargin, 77);
   }
   kernel(row, {rows[0].data(), rows[1].data()});
   return rows;
@@ -225,8 +225,8 @@ TEST_P(WindowStep, DisparitiesEqualReference) {
                                 .candidates = random_int(random, 1, kWindowCandidates),
                                 .is_refined = columns % 5 != 0,
                                 .columns = columns};
-    GuardedRow<float> disparity_px(static_cast<std::size_t>(columns), 3, -77);
-    GuardedRow<float> expected(static_cast<std::size_t>(columns), 3, -77);
+    GuardedRow<float> disparity_px(columns, 3, -77);
+    GuardedRow<float> expected(columns, 3, -77);
     window_disparity_row(row, disparity_px.data());
     window_disparity_row_ref(row, 0, columns, expected.data());
     EXPECT_TRUE(disparity_px.intact());

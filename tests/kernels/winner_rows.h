@@ -92,7 +92,7 @@ inline std::vector<WinnerCase> small_winner_cases() {
   std::vector<WinnerCase> cases;
   for (const test::SampleRow& row :
        test::sampled_rows({static_cast<int>(geometries.size()), 2, 6, 2, 2})) {
-    c = geometries[static_cast<std::size_t>(row[0])];
+    c = geometries[row[0]];
     c.direction = row[1] == 0 ? -1 : 1;
     c.radius = row[2];
     c.whole_windows_only = row[3] == 1;

@@ -22,11 +22,8 @@ std::int32_t brute_force_winner(const WinnerCase& c, const WinnerCells& cells, i
   return best;
 }
 
-using Kernel = void (*)(const WinnerRow&, std::int32_t*);
-
 /// The whole row and a part of it, as strips cut it.
-void expect_winners(Kernel kernel, std::mt19937& random, const WinnerCase& c,
-                    const WinnerCells& cells) {
+void expect_winners(std::mt19937& random, const WinnerCase& c, const WinnerCells& cells) {
   std::vector<std::int32_t> expected;
   for (int x = 0; x < c.width; ++x) {
     expected.push_back(brute_force_winner(c, cells, x));
@@ -38,31 +35,26 @@ void expect_winners(Kernel kernel, std::mt19937& random, const WinnerCase& c,
     row.cells = cells.cells.data() + cells.index(first, 0);
     row.first_column = first;
     row.columns = last - first;
-    GuardedRow<std::int32_t> winners(static_cast<std::size_t>(row.columns), random() % 5,
-                                     kSentinel);
-    kernel(row, winners.data());
+    GuardedRow<std::int32_t> winners(row.columns, random() % 5, kSentinel);
+    select_winners_row(row, winners.data());
     const std::vector<std::int32_t> wanted(expected.begin() + first, expected.begin() + last);
     ASSERT_EQ(winners.values(), wanted) << c << ", columns " << first << " to " << last;
     ASSERT_TRUE(winners.intact()) << c;
   }
 }
 
-void sweep(Kernel kernel) {
+VANTAGE_ON_EVERY_TARGET(Winner);
+
+TEST_P(Winner, IsTheLeastMeanOverSamplesInsideBothImages) {
   std::mt19937 random(32);
   for_each_winner_case([&](const WinnerCase& c) {
     if (testing::Test::HasFatalFailure()) {
       return;
     }
     const std::int32_t max[] = {0, 1, 3, 20, largest_sum(c)};
-    expect_winners(kernel, random, c, WinnerCells(random, c, max[random() % std::size(max)]));
+    expect_winners(random, c, WinnerCells(random, c, max[random() % std::size(max)]));
   });
 }
-
-TEST(WinnerReference, IsTheLeastMeanOverSamplesInsideBothImages) { sweep(select_winners_row_ref); }
-
-VANTAGE_ON_EVERY_TARGET(Winner);
-
-TEST_P(Winner, IsTheLeastMeanOverSamplesInsideBothImages) { sweep(select_winners_row); }
 
 TEST_P(Winner, TiesGoToTheSmallestDisparity) {
   for (int count = 1; count <= 70; ++count) {
