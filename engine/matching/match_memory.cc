@@ -5,9 +5,8 @@
 #include <cstdint>
 
 #include "engine/matching/costs/cost_image.h"
-#include "engine/matching/levels/level_extents.h"
 #include "engine/matching/reduced_matcher.h"
-#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
+#include "engine/matching/search/coarse_to_fine/level_plan.h"
 #include "engine/matching/selection/symmetric_energies.h"
 #include "engine/rectification/epipolar_grid.h"
 
@@ -44,7 +43,7 @@ std::size_t matching_bytes(const ResolvedMatchOptions& options, const MatchSize&
   return pixels * channels * planes * sizeof(float) + grids + partner_maps +
          (check_level > 0 ? kCheckedMaps : 0) * (pixels >> 2 * check_level) * sizeof(std::int32_t) +
          edge_weight_bytes(parameters, pixels) +
-         coarse_level_bytes(parameters, size.image, candidates, size.level_bytes) +
+         level_plan(parameters, size.image, candidates, size.level_bytes).bytes() +
          symmetric_energy_bytes(parameters, size.image, candidates);
 }
 

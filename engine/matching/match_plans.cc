@@ -1,5 +1,4 @@
-#include "engine/matching/chain/candidate_geometry.h"
-#include "engine/matching/levels/level_extents.h"
+#include "engine/matching/search/coarse_to_fine/level_search.h"
 #include "engine/matching/stereo_matcher_parts.h"
 
 // Execution plans of StereoMatcher.
@@ -22,48 +21,16 @@ std::vector<scheduler::ChainPlan> StereoMatcher::plans(
   MapTask of_right{.side = Side::kRight, .image = &right, .map = &maps.right};
   of_left.need = {.whole = true};
   prepare_inputs(of_left, of_right, false, *prepared);
-  auto geometry = candidate_geometry(in_force_, Side::kLeft, left.width(), left.height());
-  maps.left.disparity_px.resize(left.width(), left.height());
-  const auto grid = displacement_grid(in_force_, Side::kLeft, left.width(), left.height());
-  if (grid) {
-    of_left.input.grid = &*grid;
-    geometry = grid->columns();
-  }
-  return plans_of(in_force_.parameters, of_left, geometry, executions);
+  return plans_of(of_left, *prepared, executions);
 }
 
 /// Plans for the finest level of `task`, one for each of `executions`.
 std::vector<scheduler::ChainPlan> StereoMatcher::plans_of(
-    const MethodParameters& parameters, const MapTask& task,
-    const kernels::CandidateGeometry& geometry,
-    std::span<const ExecutionOptions> executions) const {
-  const LevelVolume coarser;  // never read
-  const auto extents =
-      level_extents({task.image->width(), task.image->height()}, parameters.levels);
-  const bool has_windows = parameters.window_levels > 0 && extents.size() > 1;
-  LevelVolume costs;        // never written
-  LevelVolume right_costs;  // likewise
-  const bool is_pruned = !has_windows && parameters.candidate_blocks > 0 && extents.size() > 1;
-  CandidateBlocks blocks;
-  if (is_pruned) {
-    blocks.resize(extents.front(), geometry.count, parameters.candidate_blocks,
-                  geometry.steps_per_px);
-  }
-  const MatchChain chain(
-      parameters, geometry, task.input, {.disparity_px = task.map->disparity_px.view()},
-      has_windows ? ChainLevel{.reduced = &costs,
-                               .reduced_right = shares_costs(parameters, task.input,
-                                                             extents.front(), geometry.count)
-                                                    ? &right_costs
-                                                    : nullptr}
-                  : ChainLevel{.coarser = extents.size() > 1 ? &coarser : nullptr,
-                               .blocks = is_pruned ? &blocks : nullptr});
-  std::vector<scheduler::ChainPlan> plans;
-  for (const ExecutionOptions& execution : executions) {
-    plans.push_back(chain_plan(chain, execution, thread_count(execution, execution_.machine()),
-                               execution_.machine()));
-  }
-  return plans;
+    const MapTask& task, Prepared& prepared, std::span<const ExecutionOptions> executions) const {
+  MatchReport report;  // never written
+  const ImageView<float> size(nullptr, task.image->width(), task.image->height(), 1, 0);
+  return LevelSearch(in_force_, prepared.parameters, execution_, prepared.levels, report)
+      .plans(task.side, task.input, {.disparity_px = size}, executions);
 }
 
 }  // namespace vantage

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/matching/pair_exposure.h"
-#include "scheduler/strip_plan.h"
+#include "engine/matching/search/coarse_to_fine/search_report.h"
 
 namespace vantage {
 
@@ -16,16 +16,8 @@ struct StageTime {
 };
 
 /// What a matcher reports about one call.
-struct MatchReport {
+struct MatchReport : SearchReport {
   std::vector<StageTime> stages;
-  /// Plan of one map; both maps use the same. With several levels it is the plan of the image's own
-  /// level; coarser levels, a third of the work, and coarse-only maps use the same settings.
-  scheduler::ChainPlan plan;
-  /// Width × height × disparities × maps computed, over all levels; on pruned levels only the
-  /// candidates processed.
-  double cells = 0;
-  double finest_cells = 0;   ///< of `cells`, those of the finest level
-  double finest_pixels = 0;  ///< width × height × maps computed to the finest level
   /// Exposure and noise estimated from the images, if parameters ask for it; of several views, the
   /// first's.
   std::optional<PairExposure> exposure;

@@ -11,8 +11,8 @@
 #include "engine/image/photograph.h"
 #include "engine/image/side.h"
 #include "engine/image/tile_mask.h"
-#include "engine/matching/map_search.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
 #include "engine/refinement/kept_refinement.h"
 
 namespace vantage {
@@ -30,7 +30,7 @@ class PreviousMaps {
   struct OfSide {
     MatchedMap winners;  ///< disparities and confidence, before refinement
     TileMask searched;   ///< tiles to search in the next map, of the map's size
-    MapSearchWork search{CoarseLevels(true)};
+    CoarseLevels levels{true};
     KeptRefinement refinement;
     DisparityMap check_px;               ///< check map beside a whole map
     Image<std::int32_t> coarse_winners;  ///< of the level that the other map is checked against

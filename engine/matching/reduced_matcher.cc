@@ -45,10 +45,10 @@ struct ReducedParts {
   std::vector<scheduler::Region> maps;
 };
 
-/// searched: size of the images that are searched.
-ReducedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int reductions,
+/// plan: of the last search of the reduced images.
+ReducedParts parts_of(const TileMask& tiles, const LevelPlan& plan, int reductions,
                       const MethodParameters& parameters) {
-  const std::vector<scheduler::Extent> levels = level_extents(searched, parameters.levels);
+  const scheduler::Extent searched = plan.extent(0);
   const scheduler::Extent level = coarser_extent(searched);
   const int columns_per_column = 1 << reductions;
   const int reach = coarse_reach(parameters.final_iterations);
@@ -65,8 +65,8 @@ ReducedParts parts_of(const TileMask& tiles, scheduler::Extent searched, int red
   TileMask costs = tiles.widened(level, columns_per_column, 0, kPartSidePx);
   parts.search.levels = {{.costs = costs.regions(), .winners = winners.regions()}};
   // Level 2 is so small that parts of its search would take longer than all of it.
-  for (std::size_t coarser = 2; coarser < levels.size(); ++coarser) {
-    costs = costs.widened(levels[coarser], 2, 0, kPartSidePx);
+  for (int coarser = 2; coarser <= plan.coarsest(); ++coarser) {
+    costs = costs.widened(plan.extent(coarser), 2, 0, kPartSidePx);
     parts.search.levels.push_back(
         {.costs = costs.regions(), .winners = {}, .has_all_winners = true});
   }
@@ -136,7 +136,7 @@ void ReducedMatcher::prepare_costs(int reductions, Work& work) const {
 }
 
 void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
-                             const TileMask* tiles, CostSharing sharing, MapSearchWork& search_work,
+                             const TileMask* tiles, CostSharing sharing, CoarseLevels& levels,
                              Work& work, MatchedMap& half, MatchReport& report) const {
   const std::size_t own = index_of(side);
   const std::size_t other = index_of(other_side(side));
@@ -155,19 +155,18 @@ void ReducedMatcher::compute(Side side, int reductions, bool wants_confidence,
   const ImageView<float> size(nullptr, searched.width(), searched.height(), 1, 0);
   ReducedParts parts;
   if (tiles != nullptr) {
-    parts =
-        parts_of(*tiles, {searched.width(), searched.height()}, reductions, options_.parameters);
+    parts = parts_of(*tiles, levels.plan(), reductions, options_.parameters);
   }
-  MapSearch(search, search.parameters, execution_, search_work, report)
-      .compute(side, input, {.disparity_px = size},
-               {.level = kSearchLevel, .winners = &work.winners, .is_only = true}, {}, {},
-               tiles != nullptr ? &parts.search : nullptr);
+  LevelSearch(search, search.parameters, execution_, levels, report)
+      .compute(side, input,
+               {.outputs = {.disparity_px = size},
+                .coarse = {.level = kSearchLevel, .winners = &work.winners, .is_only = true},
+                .parts = tiles != nullptr ? &parts.search : nullptr});
 
   const auto searched_geometry =
       candidate_geometry(search, side, searched.width(), searched.height());
   const EnergyFormat format(search.parameters);
-  const LevelBeliefs of_search(search_work.levels.result(kSearchLevel),
-                               search_work.levels.blocks(kSearchLevel),
+  const LevelBeliefs of_search(levels.result(kSearchLevel), levels.blocks(kSearchLevel),
                                std::as_const(work.winners).view(), searched_geometry,
                                format.of_result().nats(format.steps_per_nat()));
   std::unique_ptr<WindowBeliefs> of_windows;
@@ -234,7 +233,7 @@ void ReducedMatcher::compute_changed(Side side, int reductions, bool wants_confi
                                      MatchReport& report) const {
   PreviousMaps::OfSide& kept = previous.of(side);
   compute(side, reductions, wants_confidence, previous.searched_tiles(side), CostSharing::kNone,
-          kept.search, work, kept.winners, report);
+          kept.levels, work, kept.winners, report);
   report.searched_share = std::max(report.searched_share.value_or(0), kept.searched.share());
   copy_winners(kept.winners, execution_, work.halves.of(side));
 }
@@ -309,7 +308,7 @@ void ReducedMatcher::match(const Photograph& left, const Photograph& right, cons
       const CostSharing sharing = !has_both             ? CostSharing::kNone
                                   : side == Side::kLeft ? CostSharing::kStores
                                                         : CostSharing::kUses;
-      compute(side, reductions, wants_confidence, nullptr, sharing, work.search, work, half,
+      compute(side, reductions, wants_confidence, nullptr, sharing, work.levels, work, half,
               report);
     }
   }
@@ -372,8 +371,9 @@ std::size_t ReducedMatcher::level_bytes(const ResolvedMatchOptions& options,
   for (int r = 0; r < reductions; ++r) {
     image = coarser_extent(image);
   }
-  return coarse_level_bytes(options.parameters, image,
-                            (options.disparities.count() >> reductions) + 2, memory_bytes);
+  return level_plan(options.parameters, image, (options.disparities.count() >> reductions) + 2,
+                    memory_bytes)
+      .bytes();
 }
 
 void ReducedMatcher::add_memory_use(MemoryUse& use) const {
@@ -389,7 +389,7 @@ void ReducedMatcher::add_memory_use(MemoryUse& use) const {
       images += costs[0].held_bytes() + costs[1].held_bytes();
     }
     use.add("prepared images", images);
-    use.add("coarse levels", work.search.levels.held_bytes() + work.states[0].held_bytes() +
+    use.add("coarse levels", work.levels.held_bytes() + work.states[0].held_bytes() +
                                  work.states[1].held_bytes() + held_bytes(work.halves));
     use.add("refinement", held_bytes(work.refinement));
   });

@@ -12,10 +12,10 @@
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/costs/cost_image.h"
 #include "engine/matching/deferred_match.h"
-#include "engine/matching/map_search.h"
 #include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/previous_maps.h"
+#include "engine/matching/search/coarse_to_fine/level_search.h"
 #include "engine/matching/windows/coarse_beliefs.h"
 #include "engine/matching/windows/reduced_images.h"
 #include "engine/object_pool.h"
@@ -79,7 +79,7 @@ class ReducedMatcher {
     std::vector<std::array<CostImage, 2>> costs;  ///< [reductions][side]
     EdgeWeightLevels search_edges;
     EdgeWeightLevels window_edges;
-    MapSearchWork search;
+    CoarseLevels levels;
     Image<std::int32_t> winners;  ///< of the search
     std::array<WindowState, 2> states;
     DisparityMap coarse_px;  ///< of levels of windows but the last
@@ -89,10 +89,10 @@ class ReducedMatcher {
 
   [[nodiscard]] std::shared_ptr<DeferredMatch::Images> lend_images() const;
   void prepare_costs(int reductions, Work& work) const;
-  /// Winners at half size. `tiles`: the only ones to write; null: all. search: of the last
+  /// Winners at half size. `tiles`: the only ones to write; null: all. levels: of the last
   /// call for this side, if there are `tiles`.
   void compute(Side side, int reductions, bool wants_confidence, const TileMask* tiles,
-               CostSharing sharing, MapSearchWork& search, Work& work, MatchedMap& half,
+               CostSharing sharing, CoarseLevels& levels, Work& work, MatchedMap& half,
                MatchReport& report) const;
   /// compute() of the tiles to search; the others' winners are those of `previous`.
   void compute_changed(Side side, int reductions, bool wants_confidence, PreviousMaps& previous,

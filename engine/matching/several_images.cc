@@ -125,12 +125,9 @@ scheduler::ChainPlan StereoMatcher::plan_several(const Photograph& reference,
   prepared->parameters = in_force_.parameters;
   prepared->parameters.window_levels = 0;
   MatchedMap map;  // never read
-  map.disparity_px.resize(reference.width(), reference.height());
   MapTask task{.side = Side::kLeft, .image = &reference, .map = &map};
   prepare_several(task, 0, placed(reference, others), task.side, *prepared);
-  const auto geometry =
-      candidate_geometry(in_force_, Side::kLeft, reference.width(), reference.height());
-  return plans_of(prepared->parameters, task, geometry, {&execution_.options(), 1}).front();
+  return plans_of(task, *prepared, {&execution_.options(), 1}).front();
 }
 
 void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,

@@ -12,8 +12,8 @@
 
 #include "engine/error.h"
 #include "engine/matching/chain/candidate_geometry.h"
-#include "engine/matching/levels/level_extents.h"
 #include "engine/matching/match_memory.h"
+#include "engine/matching/search/coarse_to_fine/level_search.h"
 #include "engine/matching/selection/symmetric_energies.h"
 #include "engine/matching/stage_clock.h"
 #include "engine/matching/stereo_matcher_parts.h"
@@ -44,13 +44,16 @@ StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
 
 StereoMatcher::~StereoMatcher() = default;
 
+LevelPlan StereoMatcher::level_plan_of(scheduler::Extent image) const {
+  return level_plan(in_force_.parameters, image,
+                    candidate_count(in_force_.disparities, in_force_.parameters));
+}
+
 int StereoMatcher::check_level(scheduler::Extent image) const {
   if (!in_force_.refinement) {
     return 0;
   }
-  const auto coarsest =
-      static_cast<int>(level_extents(image, in_force_.parameters.levels).size()) - 1;
-  return std::min(in_force_.refinement->cross_check_level, coarsest);
+  return std::min(in_force_.refinement->cross_check_level, level_plan_of(image).coarsest());
 }
 
 bool StereoMatcher::wants_confidence(const MatchRequest& request) const {
@@ -116,7 +119,7 @@ void StereoMatcher::prepare_inputs(MapTask& left, MapTask& right, bool uses_prio
 }
 
 bool StereoMatcher::uses_check_maps(scheduler::Extent image) const {
-  return has_check_map(in_force_.parameters, image) && !in_force_.disparities_y &&
+  return level_plan_of(image).has_check_map && !in_force_.disparities_y &&
          in_force_.refinement->edge_snapping_px == 0;
 }
 
@@ -196,16 +199,18 @@ void StereoMatcher::compute(MapTask& task, std::string_view name, bool wants_con
       kept != nullptr ? task.previous->searched_tiles(task.side) : nullptr;
   SearchedParts parts;
   if (tiles != nullptr) {
-    parts = searched_parts(*tiles, prepared.parameters);
+    parts = searched_parts(*tiles, kept->levels.plan(), prepared.parameters);
   }
-  MapSearch(in_force_, prepared.parameters, execution_,
-            kept != nullptr ? kept->search : prepared.search, report)
+  LevelSearch(in_force_, prepared.parameters, execution_,
+              kept != nullptr ? kept->levels : prepared.levels, report)
       .compute(task.side, task.input,
-               {.disparity_px = task.need.whole ? map.disparity_px.view() : size_alone,
-                .confidence = map.confidence.view(),
-                .disparity_y_px = map.disparity_y_px.view()},
-               coarse, check, task.need.whole ? volumes : std::span<const VolumeRequest>(),
-               tiles != nullptr ? &parts : nullptr);
+               {.outputs = {.disparity_px = task.need.whole ? map.disparity_px.view() : size_alone,
+                            .confidence = map.confidence.view(),
+                            .disparity_y_px = map.disparity_y_px.view()},
+                .coarse = coarse,
+                .check = check,
+                .parts = tiles != nullptr ? &parts : nullptr},
+               task.need.whole ? volumes : std::span<const VolumeRequest>());
   if (kept != nullptr) {
     report.searched_share = std::max(report.searched_share.value_or(0), kept->searched.share());
     if (task.need.whole && !task.need.check_is_only) {
@@ -376,9 +381,9 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
     compute(of_right, "match right", confidence, check_level, *prepared, clock, times,
             request.volumes);
   }
-  if (prepared->search.levels.bands().levels > 0) {
+  if (prepared->levels.plan().bands.levels > 0) {
     // Of very large images: refinement needs the memory.
-    prepared->search = {};
+    prepared->levels = {};
     prepared->images.clear();
   }
 
@@ -413,7 +418,7 @@ void StereoMatcher::add_memory_use(MemoryUse& use) const {
       bytes += held_bytes(map.disparity_px);
     }
     use.add("prepared images", bytes);
-    use.add("coarse levels", prepared.search.levels.held_bytes());
+    use.add("coarse levels", prepared.levels.held_bytes());
     use.add("prepared images", prepared.halves[0].held_bytes() + prepared.halves[1].held_bytes());
     use.add("symmetric energies", prepared.right_energies.held_bytes());
   });

@@ -18,14 +18,11 @@
 #include "engine/matching/volume/volume_request.h"
 #include "scheduler/strip_plan.h"
 
-namespace vantage::kernels {
-struct CandidateGeometry;
-}
-
 namespace vantage {
 
 class PreviousMaps;
 class StageClock;
+struct LevelPlan;
 struct MapToRefine;
 struct PlacedImage;
 
@@ -106,6 +103,7 @@ class StereoMatcher {
   struct MapTask;
   struct Parts;
 
+  [[nodiscard]] LevelPlan level_plan_of(scheduler::Extent image) const;
   /// Level that maps are checked against; 0: the maps themselves.
   [[nodiscard]] int check_level(scheduler::Extent image) const;
   /// Whether maps are checked against check maps, if not against a coarse level.
@@ -121,9 +119,7 @@ class StereoMatcher {
   void estimate_exposure(const Photograph& left, const Photograph& right, Prepared& prepared,
                          MatchReport& report) const;
   [[nodiscard]] std::vector<scheduler::ChainPlan> plans_of(
-      const MethodParameters& parameters, const MapTask& task,
-      const kernels::CandidateGeometry& geometry,
-      std::span<const ExecutionOptions> executions) const;
+      const MapTask& task, Prepared& prepared, std::span<const ExecutionOptions> executions) const;
   void require_several(const Photograph& reference, std::span<const OtherView> others) const;
   void prepare_several(MapTask& task, std::size_t own, std::span<const PlacedImage> images,
                        Side reference_side, Prepared& prepared) const;

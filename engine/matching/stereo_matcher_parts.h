@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "engine/matching/map_search.h"
 #include "engine/matching/pair_exposure.h"
 #include "engine/matching/previous_maps.h"
 #include "engine/matching/reduced_matcher.h"
+#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/windows/reduced_images.h"
 #include "engine/object_pool.h"
@@ -25,7 +25,7 @@ struct StereoMatcher::Prepared {
   MethodParameters parameters;  ///< in force, plus the values estimated from the images
   IntensityChanges of_right;
   EdgeWeightLevels edges;  ///< of the map being computed
-  MapSearchWork search;
+  CoarseLevels levels;
   /// Coarse maps of the left and the right image for the cross-check.
   std::array<Image<std::int32_t>, 2> coarse_winners;
   /// Check maps beside whole maps.

@@ -199,7 +199,7 @@ std::size_t reuse_bytes(const SequenceOptions& options, const PairShape& shape) 
   // Also the images of half the size, and check maps.
   const int candidates = candidate_count(match.disparities, match.parameters);
   return 2 * ((kHalfSizeBytes + 1) * pixels / 4 + (kMapBytes + sizeof(float)) * pixels +
-              coarse_level_bytes(match.parameters, extent, candidates, kWithoutBands));
+              level_plan(match.parameters, extent, candidates, kWithoutBands).bytes());
 }
 
 /// State of the previous frame, and the comparison with it.

@@ -97,10 +97,12 @@ Image<std::int32_t> coarse_winners(const test::PhotographPair& pair, const Match
                          0,
                          edges.prepare(is_left ? pair.left : pair.right, parameters, execution)};
   Image<std::int32_t> winners;
-  match_coarse_to_fine(parameters, geometry, input, {.disparity_px = size_alone.view()}, levels,
-                       execution,
-                       [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); },
-                       {.level = 1, .winners = &winners, .is_only = true});
+  CoarseToFine({parameters, geometry, input},
+               {.outputs = {.disparity_px = size_alone.view()},
+                .coarse = {.level = 1, .winners = &winners, .is_only = true}},
+               levels, execution,
+               [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); })
+      .search();
   return winners;
 }
 

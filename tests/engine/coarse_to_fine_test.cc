@@ -224,12 +224,13 @@ TEST_P(CoarseToFine, WholeImageExecutorGivesTheSame) {
   DisparityMap map(37, 29);
   CoarseLevels levels;
   int chains = 0;
-  match_coarse_to_fine(parameters, geometry, {nullptr, &left, {CostPartner{&right}}},
-                       {.disparity_px = map.view()}, levels, execution,
-                       [&](const MatchChain& chain) {
-                         scheduler::run_whole_image(chain.stages());
-                         ++chains;
-                       });
+  CoarseToFine({parameters, geometry, {nullptr, &left, {CostPartner{&right}}}},
+               {.outputs = {.disparity_px = map.view()}}, levels, execution,
+               [&](const MatchChain& chain) {
+                 scheduler::run_whole_image(chain.stages());
+                 ++chains;
+               })
+      .search();
   EXPECT_EQ(chains, 1 + 4);
   EXPECT_TRUE(identical(map, maps_of(pair.left, pair.right, options).left.disparity_px));
 }

@@ -68,10 +68,12 @@ BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, 
                          0,
                          edges.prepare(own, parameters, execution)};
   Image<std::int32_t> winners;
-  match_coarse_to_fine(parameters, geometry, input, {.disparity_px = maps.whole.view()}, levels,
-                       execution,
-                       [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); },
-                       {.level = level, .winners = &winners, .is_only = is_only});
+  CoarseToFine({parameters, geometry, input},
+               {.outputs = {.disparity_px = maps.whole.view()},
+                .coarse = {.level = level, .winners = &winners, .is_only = is_only}},
+               levels, execution,
+               [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); })
+      .search();
   for (int y = 0; level > 0 && y < own.height(); ++y) {
     for (int x = 0; x < own.width(); ++x) {
       maps.coarse.at(x, y) =

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
+#include "engine/matching/search/coarse_to_fine/level_plan.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/frame_memory.h"
 #include "tests/engine/oracle_comparison.h"
@@ -125,7 +125,7 @@ TEST(MemoryUse, OfCoarseLevelsIsThatOfTheirCells) {
   // Costs of all, and results of two.
   expect_images_of(levels(2), 2 * first, 2);
   expect_images_of(levels(4), 2 * (first + second) + third, 5);
-  EXPECT_EQ(coarse_level_bytes(options.resolved(), {kWidth, kHeight}, options.disparities.count()),
+  EXPECT_EQ(level_plan(options.resolved(), {kWidth, kHeight}, options.disparities.count()).bytes(),
             2 * (first + second) + third);
   // What the other map is checked against: winners of the first coarse level, four bytes each.
   const auto prepared = [&] {

@@ -22,11 +22,11 @@
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/costs/cost_image.h"
-#include "engine/matching/map_search.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/pair_exposure.h"
+#include "engine/matching/search/coarse_to_fine/level_search.h"
 #include "engine/refinement/refinement_fields.h"
 #include "tests/engine/option_complaint.h"
 #include "tests/engine/oracle_comparison.h"
@@ -98,11 +98,11 @@ class Maps {
     input.edges = edges.prepare(pair_.left, parameters, execution_);
     DisparityMap map(kWidth, kHeight);
     Image<float> confidence(kWidth, kHeight);
-    MapSearchWork work;
-    MatchReport report;
-    MapSearch(options.in_force(), parameters, execution_, work, report)
-        .compute(Side::kLeft, input, {.disparity_px = map.view(), .confidence = confidence.view()},
-                 {});
+    CoarseLevels levels;
+    SearchReport report;
+    LevelSearch(options.in_force(), parameters, execution_, levels, report)
+        .compute(Side::kLeft, input,
+                 {.outputs = {.disparity_px = map.view(), .confidence = confidence.view()}});
     Bytes bytes;
     for (const Image<float>* image : {&map, &confidence}) {
       for (int y = 0; y < kHeight; ++y) {

@@ -234,15 +234,15 @@ std::unique_ptr<scheduler::RowStage> make_pair_energy_reduction_stage(
 }
 
 void reduce_float_energy_row(const LevelVolume& finer, int y, scheduler::Range columns,
-                             float weight, double slant_penalty, std::uint16_t* work,
+                             const EnergyReduction& reduction, std::uint16_t* work,
                              LevelVolume& coarser) {
   auto row = block_row<std::uint8_t>(finer, y);
   row.columns = std::min(2 * columns.end, row.columns) - 2 * columns.begin;
   row.upper = finer.column<std::uint8_t>(2 * columns.begin, 2 * y);
   row.lower += row.upper - finer.column<std::uint8_t>(0, 2 * y);
   auto* const energies = coarser.column<std::uint8_t>(columns.begin, y);
-  kernels::reduce_compact_energies_row(row, weight, work, energies);
-  const double steps = std::nearbyint(slant_penalty / kernels::kEnergyStep);
+  kernels::reduce_compact_energies_row(row, reduction.weight, work, energies);
+  const double steps = std::nearbyint(reduction.slant_penalty / kernels::kEnergyStep);
   if (steps < kernels::kMaxCompact) {
     kernels::allow_slant_row(energies, columns.size(), coarser.lanes(),
                              static_cast<std::uint8_t>(steps));

@@ -36,11 +36,15 @@ struct PairLevels {
 std::unique_ptr<scheduler::RowStage> make_pair_energy_reduction_stage(
     std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
     std::uint8_t without_partner, float step, float weight, const PairLevels& levels);
-/// Columns of row y of `coarser` from the energies of a coarse level; a candidate may take the
-/// energy of an adjacent one at `slant_penalty` nats, infinite: it may not. `work`: one number per
-/// lane.
+/// How the energies of a block make those of a pixel of the next coarser level.
+struct EnergyReduction {
+  float weight = 1;
+  /// A candidate may take the energy of an adjacent one at so many nats; infinite: it may not.
+  double slant_penalty = 0;
+};
+/// Columns of row y of `coarser` from the energies of a coarse level. `work`: one number per lane.
 void reduce_float_energy_row(const LevelVolume& finer, int y, scheduler::Range columns,
-                             float weight, double slant_penalty, std::uint16_t* work,
+                             const EnergyReduction& reduction, std::uint16_t* work,
                              LevelVolume& coarser);
 
 /// Source stage: the likelihoods of a coarse level, computed from its energies.

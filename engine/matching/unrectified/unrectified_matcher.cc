@@ -11,9 +11,9 @@
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/costs/cost_image.h"
-#include "engine/matching/map_search.h"
 #include "engine/matching/match_inputs.h"
 #include "engine/matching/match_memory.h"
+#include "engine/matching/search/coarse_to_fine/level_search.h"
 #include "engine/matching/stage_clock.h"
 #include "engine/refinement/refine_maps.h"
 
@@ -102,10 +102,11 @@ void UnrectifiedMatcher::search(Side side, const std::array<const Photograph*, 2
   ChainInput input{nullptr, &of_reference, {}};
   input.partners.push_back({.image = of_other.data(), .epipolar = &grid});
   input.edges = edges.prepare(reference, parameters, execution_);
-  MapSearchWork work;
-  MapSearch(in_force_, parameters, execution_, work, report)
+  CoarseLevels levels;
+  LevelSearch(in_force_, parameters, execution_, levels, report)
       .compute(side, input,
-               {.disparity_px = map.disparity_px.view(), .confidence = map.confidence.view()}, {});
+               {.outputs = {.disparity_px = map.disparity_px.view(),
+                            .confidence = map.confidence.view()}});
 }
 
 void UnrectifiedMatcher::check(Side side, const DisparityMap& other_px, double tolerance_px,

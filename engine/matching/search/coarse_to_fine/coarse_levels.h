@@ -9,22 +9,13 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/matching/levels/candidate_blocks.h"
-#include "engine/matching/levels/level_bands.h"
 #include "engine/matching/levels/level_volume.h"
-#include "engine/matching/parameters/method_parameters.h"
 #include "engine/matching/search/coarse_to_fine/fine_windows.h"
+#include "engine/matching/search/coarse_to_fine/level_plan.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"
 
 namespace vantage {
-
-/// How many of the finest of `levels` levels are searched in windows, and how many have candidate
-/// blocks. Neither includes the coarsest level.
-int window_level_count(const MethodParameters& parameters, std::size_t levels);
-int pruned_level_count(const MethodParameters& parameters, std::size_t levels);
-
-/// Bytes of a cell of a stored level.
-int level_cell_bytes(const MethodParameters& parameters);
 
 /// Coarse levels stored while one map is computed: costs of each level, results of two, and the
 /// candidate blocks of pruned levels. Working memory, reused without reallocation.
@@ -36,16 +27,14 @@ class CoarseLevels {
   explicit CoarseLevels(bool keeps_costs) : keeps_costs_(keeps_costs) {}
 
   [[nodiscard]] bool keeps_costs() const { return keeps_costs_; }
-  /// `extents`: sizes of the levels, the image's own first. `bands`: the costs of their levels have
-  /// no memory yet.
-  void resize(const MethodParameters& parameters, const std::vector<scheduler::Extent>& extents,
-              int candidates, LevelBands bands);
+  /// Costs of levels with bands have no memory yet.
+  void resize(const LevelPlan& plan);
+  [[nodiscard]] const LevelPlan& plan() const { return plan_; }
 
   /// level ≥ 1.
   [[nodiscard]] LevelVolume& costs(int level) {
     return costs_[static_cast<std::size_t>(level) - 1];
   }
-  [[nodiscard]] LevelBands bands() const { return bands_; }
   /// Resizes the costs of level 1 of the other image's map.
   LevelVolume& start_other_costs();
   /// Those become the costs of level 1. Sizes must be the same.
@@ -60,7 +49,7 @@ class CoarseLevels {
   /// Candidate blocks of `level`; null: all candidates. choose_blocks() must come first on pruned
   /// levels.
   [[nodiscard]] const CandidateBlocks* blocks(int level) const {
-    return level < pruned_levels() ? &blocks_[static_cast<std::size_t>(level)] : nullptr;
+    return level < plan_.pruned_levels ? &blocks_[static_cast<std::size_t>(level)] : nullptr;
   }
   /// Chooses the blocks of a pruned level from the winners of the next coarser one. `geometry`: of
   /// the image.
@@ -68,12 +57,6 @@ class CoarseLevels {
                      CandidateBlocks::SmoothTiles smooth, Execution& execution);
   /// Winners of the level that was computed last.
   [[nodiscard]] const Image<std::int32_t>& coarser_winners() const { return *coarser_winners_; }
-  /// Whether the next finer level chooses its candidates from the winners of `level`.
-  [[nodiscard]] bool needs_winners(int level) const {
-    return level > 0 && (level <= pruned_levels() || level == window_levels_);
-  }
-  /// Number of finest levels that are searched in windows.
-  [[nodiscard]] int window_levels() const { return window_levels_; }
   [[nodiscard]] FineWindowsWork& windows() { return windows_; }
   /// Image for the winners of `level` ≥ 1, resized to the level. `kept`: an image that outlives the
   /// levels; null: working memory.
@@ -82,23 +65,15 @@ class CoarseLevels {
   [[nodiscard]] std::size_t held_bytes() const;
 
  private:
-  [[nodiscard]] int pruned_levels() const { return static_cast<int>(blocks_.size()); }
-
   bool keeps_costs_ = false;
+  LevelPlan plan_;
   std::vector<LevelVolume> costs_;
-  LevelBands bands_;
   LevelVolume other_costs_;  ///< empty unless shared
   std::array<LevelVolume, 2> results_;
   std::vector<CandidateBlocks> blocks_;             ///< of pruned levels
   std::vector<Image<std::int32_t>> winners_;        ///< of levels from 1 on, unless kept elsewhere
   Image<std::int32_t>* coarser_winners_ = nullptr;  ///< of the previous level
-  int window_levels_ = 0;
   FineWindowsWork windows_;
 };
-
-/// Bytes of CoarseLevels for images of `extent` and `candidates` disparities; 0 for one level.
-/// memory_bytes: see level_bands().
-std::size_t coarse_level_bytes(const MethodParameters& parameters, scheduler::Extent extent,
-                               int candidates, std::size_t memory_bytes = kDefaultLevelBytes);
 
 }  // namespace vantage

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/matching/levels/level_extents.h"
 #include "engine/matching/windows/window_level.h"
 
 namespace vantage {
@@ -14,15 +13,14 @@ constexpr int kMaxLevels = 2;
 
 }  // namespace
 
-SearchedParts searched_parts(const TileMask& tiles, const MethodParameters& parameters) {
-  const std::vector<scheduler::Extent> extents =
-      level_extents({tiles.width(), tiles.height()}, parameters.levels);
+SearchedParts searched_parts(const TileMask& tiles, const LevelPlan& plan,
+                             const MethodParameters& parameters) {
   SearchedParts parts;
   parts.map = tiles;
   TileMask costs = tiles;
   TileMask winners = tiles;
-  for (int level = 1; level < static_cast<int>(extents.size()); ++level) {
-    const scheduler::Extent extent = extents[static_cast<std::size_t>(level)];
+  for (int level = 1; level <= plan.coarsest(); ++level) {
+    const scheduler::Extent extent = plan.extent(level);
     costs = costs.widened(extent, 2, 0, kPartSidePx);
     if (level > kMaxLevels) {
       parts.levels.push_back({.costs = costs.regions(), .winners = {}, .has_all_winners = true});

@@ -4,6 +4,7 @@
 
 #include "engine/image/tile_mask.h"
 #include "engine/matching/parameters/method_parameters.h"
+#include "engine/matching/search/coarse_to_fine/level_plan.h"
 #include "scheduler/range.h"
 
 namespace vantage {
@@ -31,7 +32,9 @@ struct SearchedParts {
 /// Side of tiles of coarse levels in their pixels.
 inline constexpr int kPartSidePx = 4;
 
-/// The parts that are computed for `tiles` of the map, where the images changed.
-SearchedParts searched_parts(const TileMask& tiles, const MethodParameters& parameters);
+/// The parts that are computed for `tiles` of the map, where the images changed. `plan`: of the
+/// last search.
+SearchedParts searched_parts(const TileMask& tiles, const LevelPlan& plan,
+                             const MethodParameters& parameters);
 
 }  // namespace vantage
