@@ -21,13 +21,13 @@
 #include "engine/io/video/video_io.h"
 
 // Disparity maps of rectified pairs.
-#include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/options/match_presets.h"
 #include "engine/matching/pair_matcher.h"
 #include "engine/matching/range_estimation.h"
+#include "engine/matching/search/match_report.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/matching/unrectified/unrectified_matcher.h"
+#include "engine/matching/unrectified_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
 
 // Cameras, and unrectified pairs.

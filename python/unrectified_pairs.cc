@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "engine/matching/match_inputs.h"
-#include "engine/matching/unrectified/rectified_map.h"
+#include "engine/matching/search/epipolar/rectified_map.h"
+#include "engine/matching/search/match_inputs.h"
 #include "python/rectification.h"
 
 namespace vantage::python {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/image/intensity_rows.h"
-#include "engine/matching/match_inputs.h"
+#include "engine/matching/search/match_inputs.h"
 
 namespace vantage {
 namespace {

@@ -1,30 +1,16 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "engine/execution.h"
 #include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/costs/intensity_change.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/search/match_report.h"
 
 namespace vantage {
 
 class StereoMatcher;
-
-/// Intensity statistics of a pair.
-struct PairExposure {
-  /// Maps the right image's intensities to the left's; empty if the pair does not determine it.
-  IntensityChanges of_right;
-  bool has_intensity_change = false;
-  /// σM in grey levels, at least 4: σ of Birchfield and Tomasi's difference at matches after the
-  /// intensity change. Empty if there are too few matches.
-  std::optional<double> sigma_measurement;
-  int matches = 0;  ///< number of matches examined
-
-  friend bool operator==(const PairExposure&, const PairExposure&) = default;
-};
 
 /// Estimates the exposure difference and the noise of a pair's cameras: matches bands of rows by
 /// census codes, which are invariant to exposure, and compares the intensities of pixels that both

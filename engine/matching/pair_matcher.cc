@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "engine/matching/match_inputs.h"
 #include "engine/matching/range_estimation.h"
+#include "engine/matching/search/match_inputs.h"
 #include "engine/matching/vertical_range.h"
 
 namespace vantage {

@@ -9,8 +9,8 @@
 #include "engine/image/disparity_maps.h"
 #include "engine/image/disparity_range.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/search/match_report.h"
 #include "engine/matching/stereo_matcher.h"
 
 namespace vantage {

@@ -2,50 +2,21 @@
 
 #include <memory>
 #include <span>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
-#include "engine/image/image.h"
 #include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/deferred_match.h"
-#include "engine/matching/match_inputs.h"
-#include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
-#include "engine/matching/volume/volume_request.h"
+#include "engine/matching/search/match_inputs.h"
+#include "engine/matching/search/match_report.h"
+#include "engine/matching/search/match_request.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
 
-class PreviousMaps;
-class StageClock;
-struct LevelPlan;
-struct MapToRefine;
-struct PlacedImage;
-
-/// Requested outputs. A map that is not requested may still be computed for the cross-check of the
-/// other one; its contents are undefined. Without `previous`, maps do not depend on whether the
-/// other is requested.
-struct MatchRequest {
-  bool left = true;
-  bool right = true;
-  bool unmatched = true;    ///< the masks of the maps
-  bool confidence = false;  ///< the confidence of the maps
-  /// Volumes written to their sinks while maps are computed, not for a reduced search-size. Maps do
-  /// not depend on them.
-  std::span<const VolumeRequest> volumes = {};
-  DisparityPrior prior = {};  ///< without a vertical search only
-  /// For match() without reuse_obstacle(), prior and volumes: tiles keep the maps of the pair
-  /// before. Replaced by the maps of this pair; a request with it runs alone.
-  PreviousMaps* previous = nullptr;
-  /// With `previous`: where the images moved, match() makes no maps, but sets this. The same call
-  /// with this and without `previous` makes them: in any thread, also while pairs after it are
-  /// matched.
-  DeferredMatch* deferred = nullptr;
-};
+class MatchRunner;
 
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).
 ///
@@ -98,48 +69,9 @@ class StereoMatcher {
   [[nodiscard]] const ResolvedMatchOptions& in_force() const { return in_force_; }
 
  private:
-  struct Prepared;
-  struct MapNeed;
-  struct MapTask;
-  struct Parts;
-
-  [[nodiscard]] LevelPlan level_plan_of(scheduler::Extent image) const;
-  /// Level that maps are checked against; 0: the maps themselves.
-  [[nodiscard]] int check_level(scheduler::Extent image) const;
-  /// Whether maps are checked against check maps, if not against a coarse level.
-  [[nodiscard]] bool uses_check_maps(scheduler::Extent image) const;
-  [[nodiscard]] std::pair<MapNeed, MapNeed> needs(const MatchRequest& request,
-                                                  scheduler::Extent image) const;
-  void require_memory(const Photograph& image, bool keeps_costs,
-                      std::span<const double> baselines = {}) const;
-  void require_reuse(const MatchRequest& request, bool uses_prior) const;
-  [[nodiscard]] bool wants_confidence(const MatchRequest& request) const;
-  void prepare_inputs(MapTask& left, MapTask& right, bool uses_prior, Prepared& prepared,
-                      std::span<const VolumeRequest> volumes = {}) const;
-  void estimate_exposure(const Photograph& left, const Photograph& right, Prepared& prepared,
-                         MatchReport& report) const;
-  [[nodiscard]] std::vector<scheduler::ChainPlan> plans_of(
-      const MapTask& task, Prepared& prepared, std::span<const ExecutionOptions> executions) const;
-  void require_several(const Photograph& reference, std::span<const OtherView> others) const;
-  void prepare_several(MapTask& task, std::size_t own, std::span<const PlacedImage> images,
-                       Side reference_side, Prepared& prepared) const;
-  [[nodiscard]] std::vector<IntensityChanges> estimate_exposure(const Photograph& reference,
-                                                                std::span<const OtherView> others,
-                                                                Prepared& prepared,
-                                                                MatchReport& report) const;
-  void compute(MapTask& task, std::string_view name, bool wants_confidence, int check_level,
-               Prepared& prepared, StageClock& clock, MatchReport& report,
-               std::span<const VolumeRequest> volumes) const;
-  void choose_tiles(MapTask& left, MapTask& right, bool wants_confidence, PreviousMaps& previous,
-                    Prepared& prepared, MatchReport& report) const;
-  void compute_symmetric(MapTask& left, MapTask& right, bool wants_confidence, Prepared& prepared,
-                         StageClock& clock, MatchReport& report,
-                         std::span<const VolumeRequest> volumes) const;
-  [[nodiscard]] MapToRefine to_refine(const MapTask& task, bool is_result) const;
-
   const ResolvedMatchOptions in_force_;
   Execution& execution_;
-  std::unique_ptr<Parts> parts_;
+  std::unique_ptr<MatchRunner> runner_;
 };
 
 }  // namespace vantage

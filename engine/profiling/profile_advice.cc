@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "engine/matching/reduced_matcher.h"
+#include "engine/matching/search/reduced/reduction.h"
 
 namespace vantage {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
-#include "engine/matching/previous_maps.h"
+#include "engine/matching/search/previous_maps.h"
 #include "engine/sequence/still_pixels.h"
 
 namespace vantage {

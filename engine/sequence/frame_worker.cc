@@ -16,7 +16,7 @@
 #include "engine/image/stereo_display.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/images/preview.h"
-#include "engine/matching/unrectified/rectified_map.h"
+#include "engine/matching/search/epipolar/rectified_map.h"
 #include "engine/sequence/depth_picture.h"
 #include "engine/sequence/preview_range.h"
 #include "engine/sequence/stored_maps.h"

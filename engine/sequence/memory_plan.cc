@@ -7,9 +7,7 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/matching/match_memory.h"
-#include "engine/matching/reduced_matcher.h"
-#include "engine/matching/search/coarse_to_fine/coarse_levels.h"
+#include "engine/matching/search_table.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/three_step_synthesizer.h"
@@ -31,6 +29,17 @@ std::size_t pixels_of(ImageExtent extent) {
 std::size_t photograph_bytes(ImageExtent extent, const PairShape& shape) {
   return pixels_of(extent) * static_cast<std::size_t>(shape.channels) *
          static_cast<std::size_t>(shape.bytes_per_value);
+}
+
+/// What matching one frame stores. level_bytes: see level_bands().
+SearchPlan match_plan(const SequenceOptions& options, const PairShape& shape,
+                      std::size_t level_bytes = kDefaultLevelBytes) {
+  return search_plan(options.match.in_force(),
+                     {.image = {shape.source.width_px, shape.source.height_px},
+                      .channels = shape.channels,
+                      .baselines = options.baselines,
+                      .along_lines = options.unrectified != UnrectifiedSearch::kNone,
+                      .level_bytes = level_bytes});
 }
 
 /// Memory of one frame from reading to the last of its files: the members of FrameSlot, plus the
@@ -70,11 +79,7 @@ std::size_t frame_bytes(const SequenceOptions& options, const PairShape& shape) 
     bytes += 2 * pixels * sizeof(float);
   }
   if (options.temporal.reuse != Reuse::kNone) {
-    const ResolvedMatchOptions match = options.match.in_force();
-    const scheduler::Extent extent{shape.source.width_px, shape.source.height_px};
-    if (search_reductions(match, extent) > 0) {
-      bytes += ReducedMatcher::deferred_bytes(match, extent);
-    }
+    bytes += match_plan(options, shape).deferred_bytes;
   }
   if (options.saves_cyclopean()) {
     bytes += pixels * (sizeof(float) + 1);
@@ -109,15 +114,6 @@ std::size_t rectification_bytes(const SequenceOptions& options, const PairShape&
          (views_show_photographs(options)
               ? PhotographGrid::held_bytes(shape.source.width_px, shape.source.height_px)
               : 0);
-}
-
-/// Matching one frame, except its strips.
-std::size_t match_bytes(const SequenceOptions& options, const PairShape& shape) {
-  return matching_bytes(options.match.in_force(),
-                        {.image = {shape.source.width_px, shape.source.height_px},
-                         .channels = shape.channels,
-                         .baselines = options.baselines,
-                         .along_lines = options.unrectified != UnrectifiedSearch::kNone});
 }
 
 bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {
@@ -185,21 +181,18 @@ std::size_t view_bytes(const SequenceOptions& options, const PairShape& shape) {
 
 /// What both maps keep from the previous frame.
 std::size_t reuse_bytes(const SequenceOptions& options, const PairShape& shape) {
-  const scheduler::Extent extent{shape.source.width_px, shape.source.height_px};
   const std::size_t pixels = pixels_of(shape.source);
   // Of images of half the size: levels, mask of changes. Of maps: pixels without a match; winners,
   // refined, confidence.
   constexpr std::size_t kHalfSizeBytes = 2;
   constexpr std::size_t kMapBytes = 1 + 3 * sizeof(float);
-  const ResolvedMatchOptions match = options.match.in_force();
-  if (search_reductions(match, extent) > 0) {
-    return 2 * ((kHalfSizeBytes + kMapBytes) * pixels / 4 +
-                ReducedMatcher::level_bytes(match, extent, kWithoutBands));
+  const SearchPlan plan = match_plan(options, shape, kWithoutBands);
+  if (plan.reductions > 0) {
+    return 2 * ((kHalfSizeBytes + kMapBytes) * pixels / 4 + plan.levels.bytes());
   }
   // Also the images of half the size, and check maps.
-  const int candidates = candidate_count(match.disparities, match.parameters);
   return 2 * ((kHalfSizeBytes + 1) * pixels / 4 + (kMapBytes + sizeof(float)) * pixels +
-              level_plan(match.parameters, extent, candidates, kWithoutBands).bytes());
+              plan.levels.bytes());
 }
 
 /// State of the previous frame, and the comparison with it.
@@ -274,7 +267,7 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
   }
   fixed += static_cast<std::size_t>(threads) * kThreadBytes;
   const std::size_t of_worked_on =
-      match_bytes(options, shape) + view_bytes(options, shape) + conversion_bytes(shape);
+      match_plan(options, shape).bytes() + view_bytes(options, shape) + conversion_bytes(shape);
   const int wanted = request.in_flight.value_or(default_frames_in_flight(threads));
   for (plan.in_flight = std::min(wanted, kMaxFramesInFlight); plan.in_flight >= 1;
        --plan.in_flight) {

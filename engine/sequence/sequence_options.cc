@@ -12,8 +12,8 @@
 #include "engine/io/maps/disparity_io.h"
 #include "engine/io/maps/map_formats.h"
 #include "engine/matching/aggregation/aggregation_table.h"
-#include "engine/matching/match_inputs.h"
-#include "engine/matching/previous_maps.h"
+#include "engine/matching/search/match_inputs.h"
+#include "engine/matching/search/previous_maps.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {

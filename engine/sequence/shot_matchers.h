@@ -7,7 +7,7 @@
 
 #include "engine/execution.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/matching/unrectified/unrectified_matcher.h"
+#include "engine/matching/unrectified_matcher.h"
 #include "engine/sequence/shots.h"
 
 namespace vantage {

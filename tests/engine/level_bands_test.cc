@@ -8,7 +8,7 @@
 
 #include "engine/image/memory_use.h"
 #include "engine/matching/levels/level_extents.h"
-#include "engine/matching/match_memory.h"
+#include "engine/matching/search_table.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/oracle_comparison.h"
@@ -118,18 +118,19 @@ TEST(LevelBands, EstimateTellsWhatDoesNotFit) {
   EXPECT_EQ(memory_obstacle(options(MatchPreset::kRealtime), size, 6 * kGiB), "");
   // Along epipolar lines the other image is sampled 16 times; nothing is searched in reduced
   // images.
-  EXPECT_GT(
-      matching_bytes(options(MatchPreset::kRealtime), {.image = size.image, .along_lines = true}),
-      matching_bytes(options(MatchPreset::kRealtime), size) + 16 * kGiB);
+  EXPECT_GT(search_plan(options(MatchPreset::kRealtime), {.image = size.image, .along_lines = true})
+                .bytes(),
+            search_plan(options(MatchPreset::kRealtime), size).bytes() + 16 * kGiB);
   // Several images are searched at full size, too.
   const std::vector<double> baselines = {1, 0.5};
   EXPECT_THAT(memory_obstacle(options(MatchPreset::kRealtime),
                               {.image = size.image, .baselines = baselines}, 6 * kGiB),
               testing::EndsWith("of this machine: match tiles or fewer disparities"));
   // Without bands.
-  EXPECT_GT(matching_bytes(options(MatchPreset::kBalanced),
-                           {.image = size.image, .level_bytes = 100 * kGiB}),
-            matching_bytes(options(MatchPreset::kBalanced), size) + 8 * kGiB);
+  EXPECT_GT(
+      search_plan(options(MatchPreset::kBalanced), {.image = size.image, .level_bytes = 100 * kGiB})
+          .bytes(),
+      search_plan(options(MatchPreset::kBalanced), size).bytes() + 8 * kGiB);
 }
 
 }  // namespace level_bands_test

@@ -1,4 +1,4 @@
-#include "engine/matching/reduced_matcher.h"
+#include "engine/matching/search/reduced/reduction.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

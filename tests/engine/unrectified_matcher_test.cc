@@ -1,6 +1,6 @@
 // Matching photographs that are not rectified, against a generated scene and against rectified
 // pairs.
-#include "engine/matching/unrectified/unrectified_matcher.h"
+#include "engine/matching/unrectified_matcher.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include "engine/error.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/matching/options/method_names.h"
+#include "engine/matching/search/epipolar/rectified_map.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/matching/unrectified/rectified_map.h"
 #include "engine/rectification/epipolar_grid.h"
 #include "tests/engine/identical_maps.h"
 

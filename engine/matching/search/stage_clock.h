@@ -4,7 +4,7 @@
 #include <optional>
 #include <string_view>
 
-#include "engine/matching/match_report.h"
+#include "engine/matching/search/match_report.h"
 #include "scheduler/trace.h"
 
 namespace vantage {

@@ -1,4 +1,4 @@
-#include "engine/matching/previous_maps.h"
+#include "engine/matching/search/previous_maps.h"
 
 #include <algorithm>
 #include <cstdint>

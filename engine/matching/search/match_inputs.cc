@@ -1,4 +1,4 @@
-#include "engine/matching/match_inputs.h"
+#include "engine/matching/search/match_inputs.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "engine/matching/unrectified/rectified_map.h"
+#include "engine/matching/search/epipolar/rectified_map.h"
 
 #include <cmath>
 #include <cstdint>

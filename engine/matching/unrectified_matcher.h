@@ -1,18 +1,18 @@
 #pragma once
 
-#include <array>
 #include <memory>
 
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/match_report.h"
 #include "engine/matching/options/match_options.h"
-#include "engine/matching/pair_exposure.h"
+#include "engine/matching/search/match_report.h"
 #include "engine/rectification/epipolar_grid.h"
 #include "engine/rectification/rectifier.h"
 
 namespace vantage {
+
+class MatchRunner;
 
 /// What is made of a pair that is not rectified.
 struct UnrectifiedRequest {
@@ -32,8 +32,10 @@ class UnrectifiedMatcher {
   /// Throws UsageError for invalid options, and for those that need rows: a search in two
   /// dimensions, selection symmetric, a cross-check of coarse levels. `rectifier` and `execution`
   /// must outlive it. Takes 16 bytes per pixel and image.
-  UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier, Execution& execution)
-      : UnrectifiedMatcher(options, rectifier, epipolar_grids(rectifier, execution), execution) {}
+  UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier, Execution& execution);
+  UnrectifiedMatcher(const UnrectifiedMatcher&) = delete;
+  UnrectifiedMatcher& operator=(const UnrectifiedMatcher&) = delete;
+  ~UnrectifiedMatcher();
   /// Throws UsageError as the constructor does, but for a range that is to be found.
   static void validate(MatchOptions options);
 
@@ -48,18 +50,10 @@ class UnrectifiedMatcher {
   [[nodiscard]] const ResolvedMatchOptions& in_force() const { return in_force_; }
 
  private:
-  void search(Side side, const std::array<const Photograph*, 2>& photographs,
-              const MethodParameters& parameters, const IntensityChanges& of_right,
-              bool wants_confidence, MatchedMap& map, MatchReport& report) const;
-  /// Erases the disparities of `side` that the other map contradicts.
-  void check(Side side, const DisparityMap& other_px, double tolerance_px,
-             DisparityMap& map_px) const;
-
   ResolvedMatchOptions in_force_;
   const Rectifier& rectifier_;
-  Execution& execution_;
-  std::unique_ptr<PairExposureEstimator> exposure_;  ///< null: nothing is estimated
   std::shared_ptr<const EpipolarGrids> grids_;
+  std::unique_ptr<MatchRunner> runner_;
 };
 
 }  // namespace vantage

@@ -1,0 +1,219 @@
+#include "engine/matching/match_runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+/// Throws UsageError where maps cannot keep anything from the pair before.
+void require_reuse(const SearchJob& job) {
+  const std::string_view obstacle = job.request.uses_prior()       ? "a prior"
+                                    : !job.request.volumes.empty() ? "volumes"
+                                                                   : reuse_obstacle(job.options);
+  if (!obstacle.empty()) {
+    throw UsageError(
+        fmt::format("there are maps of the pair before with {}, expected none", obstacle));
+  }
+}
+
+/// Sets what is computed of each image's map: the map if it is requested or needed to check the
+/// other one; what the other one is checked against.
+void set_needs(const SearchAbilities& abilities, SearchJob& job) {
+  if (job.is_checked() && abilities.coarse_checks) {
+    job.check_level =
+        std::min(job.options.refinement->cross_check_level, job.plan.levels.coarsest());
+  }
+  const bool has_level = job.check_level > 0;
+  const bool has_check_maps = job.is_checked() && abilities.coarse_checks && !has_level &&
+                              job.plan.levels.has_check_map && !job.options.disparities_y &&
+                              job.options.refinement->edge_snapping_px == 0;
+  for (MapTask& task : job.tasks) {
+    const bool is_other_wanted =
+        job.tasks.size() > 1 && job.task_of(other_side(task.side)).is_result;
+    task.need = {.whole = task.is_result || (job.is_checked() && !has_level),
+                 .coarse = has_level && is_other_wanted,
+                 .check = has_check_maps && is_other_wanted,
+                 .check_is_only = has_check_maps && !task.is_result};
+    task.need.whole = task.need.whole || job.is_symmetric();
+  }
+}
+
+}  // namespace
+
+MatchRunner::MatchRunner(const ResolvedMatchOptions& options, Execution& execution)
+    : options_(options), execution_(execution) {
+  if (uses_pair_exposure(options.parameters)) {
+    exposure_ = std::make_unique<PairExposureEstimator>(options.disparities, execution);
+  }
+}
+
+/// keeps_costs: for the pair after it.
+MatchSize MatchRunner::size_of(const MatchCall& call, bool keeps_costs) const {
+  const Photograph& image = *call.images.front().photograph;
+  return {.image = {image.width(), image.height()},
+          .channels = image.channels(),
+          .baselines = call.baselines,
+          .along_lines = call.grids != nullptr,
+          .level_bytes =
+              keeps_costs ? kWithoutBands
+                          : execution_.options().level_memory_bytes.value_or(kDefaultLevelBytes)};
+}
+
+SearchJob MatchRunner::job_of(const MatchCall& call, const MatchRequest& request,
+                              DisparityMaps& maps, MatchReport& report, StageClock& clock) const {
+  return {.options = options_,
+          .execution = execution_,
+          .request = request,
+          .maps = maps,
+          .report = report,
+          .clock = clock,
+          .images = call.images,
+          .reference_side = call.reference_side,
+          .rectifier = call.rectifier,
+          .grids = call.grids,
+          .parameters = options_.parameters};
+}
+
+void MatchRunner::run(const MatchCall& call, const MatchRequest& request, DisparityMaps& maps,
+                      MatchReport* report) {
+  MatchReport own_report;
+  MatchReport& times = report != nullptr ? *report : own_report;
+  const bool is_resumed =
+      request.previous == nullptr && request.deferred != nullptr && request.deferred->is_pending;
+  if (!is_resumed) {
+    times = {};
+  }
+  StageClock clock(times);
+  SearchJob job = job_of(call, request, maps, times, clock);
+  const MatchSize size = size_of(call, request.previous != nullptr);
+  const SearchEntry& entry = search_of(options_, size);
+  if (request.previous != nullptr) {
+    require_reuse(job);
+  }
+  require_abilities(entry.abilities, options_, request);
+  clock.start("prepare");
+  const std::string obstacle = memory_obstacle(options_, size, execution_.machine().memory_bytes);
+  if (!obstacle.empty()) {
+    throw Error(obstacle);
+  }
+  job.plan = entry.plan(options_, size);
+  const auto search = entry.start(job, pools_);
+  if (is_resumed) {
+    search->resume(*request.deferred);
+  } else {
+    search->start();
+  }
+  set_needs(entry.abilities, job);
+  if (exposure_) {
+    estimate_exposure(*search, job);
+  }
+  if (request.previous != nullptr && !choose_tiles(*search, job)) {
+    return;
+  }
+  search->prepare();
+  for (MapTask& task : job.tasks) {
+    if (task.need.any()) {
+      clock.start(task.name);
+    }
+    search->search(task);
+  }
+  const auto work = pools_.refinement.borrow();
+  search->refine(*work);
+}
+
+/// Chooses the tiles of both maps that are searched. False: the images moved, and the call is left
+/// for later.
+bool MatchRunner::choose_tiles(MapSearch& search, SearchJob& job) const {
+  job.clock.start("changes");
+  const MatchRequest& request = job.request;
+  std::uint32_t needed = job.wants_confidence() ? 1 : 0;
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    const MapTask& task = job.task_of(side);
+    for (const bool is_needed : {task.is_result, task.need.whole, task.need.coarse, task.need.check,
+                                 task.need.check_is_only}) {
+      needed = 2 * needed + (is_needed ? 1 : 0);
+    }
+  }
+  const auto halves = search.half_size_images();
+  const Photograph& of_map = *job.tasks.front().image;
+  if (request.previous->choose(*halves[0], *halves[1],
+                               {{of_map.width(), of_map.height()}, needed})) {
+    job.previous = request.previous;
+  } else {
+    job.report.searched_share = 1;
+    if (request.deferred != nullptr) {
+      search.defer(*request.deferred);
+      return false;
+    }
+  }
+  job.clock.start("prepare");
+  return true;
+}
+
+/// Estimates each other image against the reference; σ is that of the noisiest.
+void MatchRunner::estimate_exposure(MapSearch& search, SearchJob& job) const {
+  job.clock.start("grey levels");
+  std::optional<double> sigma;
+  std::size_t other = 0;
+  for (const ExposureImages& images : search.exposure_images()) {
+    const PairExposure exposure = exposure_of(images);
+    job.images[++other].changes = exposure.of_right;
+    if (exposure.sigma_measurement) {
+      sigma = std::max(sigma.value_or(0), *exposure.sigma_measurement);
+    }
+    if (!job.report.exposure) {
+      job.report.exposure = exposure;
+    }
+  }
+  if (job.parameters.estimate_sigma_measurement && sigma) {
+    job.parameters.sigma_measurement = *sigma;
+  }
+  job.clock.start("prepare");
+}
+
+PairExposure MatchRunner::exposure_of(const ExposureImages& images) const {
+  const MethodParameters& parameters = options_.parameters;
+  const auto estimate = [&](const PairExposureEstimator& estimator) {
+    return estimator.estimate(*images.first, *images.second, parameters.colour,
+                              parameters.match_exposure);
+  };
+  return images.range == options_.disparities
+             ? estimate(*exposure_)
+             : estimate(PairExposureEstimator(images.range, execution_));
+}
+
+std::vector<scheduler::ChainPlan> MatchRunner::plans(const MatchCall& call,
+                                                     std::span<const ExecutionOptions> executions) {
+  const MatchRequest request;
+  DisparityMaps maps;  // never read
+  MatchReport report;  // never read
+  StageClock clock(report);
+  SearchJob job = job_of(call, request, maps, report, clock);
+  ResolvedMatchOptions at_full_size = options_;
+  at_full_size.parameters.search_size = SearchSize::kFull;
+  const MatchSize size = size_of(call, false);
+  const SearchEntry& entry = search_of(at_full_size, size);
+  require_abilities(entry.abilities, options_);
+  job.plan = entry.plan(at_full_size, size);
+  const auto search = entry.start(job, pools_);
+  search->start();
+  job.task_of(call.reference_side).need = {.whole = true};
+  search->prepare();
+  return search->plans(job.task_of(call.reference_side), executions);
+}
+
+void MatchRunner::add_memory_use(MemoryUse& use) const {
+  if (exposure_) {
+    exposure_->add_memory_use(use);
+  }
+  pools_.add_memory_use(use);
+}
+
+}  // namespace vantage

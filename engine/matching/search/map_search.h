@@ -1,0 +1,151 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "engine/execution.h"
+#include "engine/image/disparity_maps.h"
+#include "engine/image/photograph.h"
+#include "engine/image/side.h"
+#include "engine/matching/costs/intensity_change.h"
+#include "engine/matching/options/match_options.h"
+#include "engine/matching/search/deferred_match.h"
+#include "engine/matching/search/match_report.h"
+#include "engine/matching/search/match_request.h"
+#include "engine/matching/search/previous_maps.h"
+#include "engine/matching/search/search_plan.h"
+#include "engine/matching/search/stage_clock.h"
+#include "engine/rectification/epipolar_grid.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/refinement/refine_maps.h"
+
+namespace vantage {
+
+/// What a search can do beside maps along the rows of a pair. Texts: why it cannot, as the refusal
+/// says it; empty: it can.
+struct SearchAbilities {
+  std::string_view name;
+  std::string_view no_vertical_range = {};
+  std::string_view no_symmetric_selection = {};
+  std::string_view no_prior = {};
+  std::string_view no_volumes = {};
+  bool several_images = false;
+  bool bands = false;          ///< costs of coarse levels of very large images, see LevelBands
+  bool reuse = false;          ///< of the maps of the pair before
+  bool coarse_checks = false;  ///< a map is checked against a coarse level of the other
+};
+
+/// An image of a call.
+struct SearchedPhotograph {
+  const Photograph* photograph;
+  double place = 0;  ///< 0: the reference; in the distance of the first other image, of its sign
+  IntensityChanges changes = {};  ///< to the reference's grey levels
+};
+
+/// What is computed of an image's map: the map, and what is used to check the other one.
+struct MapNeed {
+  bool whole = false;   ///< the map, unless check_is_only
+  bool coarse = false;  ///< a coarse level
+  bool check = false;   ///< a check map
+  bool check_is_only = false;
+  [[nodiscard]] bool any() const { return whole || coarse; }
+};
+
+/// One image and the map to compute for it.
+struct MapTask {
+  Side side;
+  const Photograph* image;  ///< of the map's size
+  MatchedMap* map;
+  std::string_view name;  ///< of the report's stage
+  bool is_result = true;  ///< the map is requested
+  bool wants_confidence = false;
+  std::span<const VolumeRequest> volumes = {};
+  MapNeed need = {};
+  // Made by the search, to check the other map.
+  CoarseWinners coarse = {};             ///< empty: not needed
+  ImageView<const float> check_px = {};  ///< empty: not needed
+};
+
+/// One call: what searches read, and what is known of its maps. All references must outlive it.
+struct SearchJob {
+  const ResolvedMatchOptions& options;
+  Execution& execution;
+  const MatchRequest& request;
+  DisparityMaps& maps;
+  MatchReport& report;
+  StageClock& clock;
+  std::vector<SearchedPhotograph> images;  ///< a pair: left, right; several: the reference first
+  Side reference_side = Side::kLeft;       ///< several: kLeft if the second one is to its right
+  // Of a pair that is not rectified.
+  const Rectifier* rectifier = nullptr;
+  const EpipolarGrids* grids = nullptr;
+
+  MethodParameters parameters;  ///< those in force, plus the values estimated from the images
+  SearchPlan plan = {};
+  std::vector<MapTask> tasks = {};        ///< in the order of their searches
+  PreviousMaps* previous = nullptr;  ///< of both maps; null: everything is searched
+  int check_level = 0;               ///< level that maps are checked against; 0: the maps
+
+  [[nodiscard]] scheduler::Extent extent() const {
+    return {images.front().photograph->width(), images.front().photograph->height()};
+  }
+  [[nodiscard]] bool is_checked() const {
+    return options.refinement && options.refinement->cross_check;
+  }
+  [[nodiscard]] bool wants_confidence() const {
+    return request.confidence || (options.refinement && uses_confidence(*options.refinement));
+  }
+  [[nodiscard]] bool is_symmetric() const {
+    return options.parameters.selection == Selection::kSymmetric;
+  }
+  [[nodiscard]] MapTask& task_of(Side side) { return tasks[tasks.front().side == side ? 0 : 1]; }
+};
+
+/// Images whose grey levels are compared: each pair makes the changes of one image after the first.
+struct ExposureImages {
+  const Photograph* first;
+  const Photograph* second;
+  DisparityRange range;  ///< x of the first image − x of the second
+};
+
+/// A way to find the winners of maps, at work on one call. Its functions are called in this order,
+/// those without a comment "always" only if they are needed.
+class MapSearch {
+ public:
+  explicit MapSearch(SearchJob& job) : job_(job) {}
+  MapSearch(const MapSearch&) = delete;
+  MapSearch& operator=(const MapSearch&) = delete;
+  virtual ~MapSearch() = default;
+
+  /// Always, unless resume() takes over what defer() of an earlier call has left: sets the tasks.
+  virtual void start() = 0;
+  virtual void resume(DeferredMatch& deferred) {
+    deferred = {};
+    start();
+  }
+  virtual std::vector<ExposureImages> exposure_images() { return {}; }
+  /// 8-bit grey, half the size of both images, in which changes since the pair before are found.
+  virtual std::array<const Photograph*, 2> half_size_images() { return {}; }
+  /// Leaves the call for later.
+  virtual void defer(DeferredMatch& deferred) { deferred.is_pending = true; }
+  /// Always: prepares what the searches of all maps read.
+  virtual void prepare() = 0;
+  /// Always, for each task: its winners.
+  virtual void search(MapTask& task) = 0;
+  /// Always: checks and refines the maps.
+  virtual void refine(RefinementWork& work) = 0;
+
+  /// After prepare(), instead of the rest: the plans of the map of `task`, one for each of
+  /// `executions`; none where images of several sizes are searched.
+  [[nodiscard]] virtual std::vector<scheduler::ChainPlan> plans(
+      const MapTask& /*task*/, std::span<const ExecutionOptions> /*executions*/) {
+    return {};
+  }
+
+ protected:
+  SearchJob& job_;
+};
+
+}  // namespace vantage
