@@ -41,8 +41,8 @@ void run_whole_image_chain(const Photograph& left, const Photograph& right,
       candidate_geometry(options.in_force(), Side::kLeft, left.width(), left.height());
   const MethodParameters parameters = options.resolved();
   PreparedPair pair;
-  prepare_pair(left, right, geometry, parameters.window_px * parameters.window_px, {true, false},
-               execution, pair);
+  pair.prepare(left, right, geometry, parameters.window_px * parameters.window_px, {true, false},
+               execution);
   DisparityMap map(left.width(), left.height());
   const MatchChain chain(parameters, geometry, {&pair, nullptr, {}}, {map.view(), {}, {}});
   scheduler::run_whole_image(chain.stages());

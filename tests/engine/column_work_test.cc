@@ -57,8 +57,8 @@ std::vector<StageWork> works_of(const MatchOptions& method, const ChainCase& mad
   ChainInput input;
   const bool is_plain = !made.has_prior && made.baseline_ratios.size() == 1;
   if (is_plain && uses_column_ssd(parameters)) {
-    prepare_pair(photographs.left, photographs.right, geometry,
-                 parameters.window_px * parameters.window_px, {true, false}, execution, pair);
+    pair.prepare(photographs.left, photographs.right, geometry,
+                 parameters.window_px * parameters.window_px, {true, false}, execution);
     input.pair = &pair;
   } else {
     reference.prepare(photographs.left, parameters, geometry, {true, false, false}, execution);

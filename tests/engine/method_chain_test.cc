@@ -55,9 +55,8 @@ class MethodChain : public ::testing::TestWithParam<MethodCase> {
     geometry_ = candidate_geometry(options_.in_force(), reference, kWidth, kHeight);
     const bool is_left = reference == Side::kLeft;
     if (uses_column_ssd(parameters_)) {
-      prepare_pair(photographs_.left, photographs_.right, geometry_,
-                   parameters_.window_px * parameters_.window_px, {is_left, !is_left}, execution_,
-                   pair_);
+      pair_.prepare(photographs_.left, photographs_.right, geometry_,
+                    parameters_.window_px * parameters_.window_px, {is_left, !is_left}, execution_);
       input_.pair = &pair_;
       return;
     }

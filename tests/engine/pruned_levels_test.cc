@@ -190,8 +190,11 @@ Energies cells_of(const Level& level, const MethodParameters& parameters, bool p
     stages.back() = std::make_unique<MaskedSource>(std::move(stages.back()), level.blocks,
                                                    level.geometry.lanes());
   }
-  for (auto& stage : make_max_product_stages(parameters, level.geometry, kExtent.rows,
-                                             {.volume = &level.coarser}, edges, blocks, {})) {
+  for (auto& stage : make_max_product_stages(parameters, {.geometry = level.geometry,
+                                                         .height = kExtent.rows,
+                                                         .edges = edges,
+                                                         .coarser = &level.coarser,
+                                                         .blocks = blocks})) {
     stages.push_back(std::move(stage));
   }
   stages.push_back(std::make_unique<BlockSink>(
@@ -292,8 +295,10 @@ void select_from_coarser(const Level& level, CandidateGeometry geometry,
     stages.push_back(make_coarser_selection_stage(geometry, kExtent.rows, selector, format,
                                                   {.volume = &level.coarser}, blocks));
   } else {
-    stages = make_max_product_stages(parameters, geometry, kExtent.rows, {.volume = &level.coarser},
-                                     nullptr, blocks, {});
+    stages = make_max_product_stages(parameters, {.geometry = geometry,
+                                                  .height = kExtent.rows,
+                                                  .coarser = &level.coarser,
+                                                  .blocks = blocks});
     stages.push_back(make_fixed_energy_selection_stage(geometry, kExtent.rows, selector, blocks));
   }
   std::vector<const scheduler::RowStage*> chain;

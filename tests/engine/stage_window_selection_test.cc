@@ -66,8 +66,8 @@ class SsdChain {
         energy_(shape.width, shape.height) {
     const bool left = direction < 0;
     Execution execution({.threads = 1});
-    prepare_pair(left ? pair.reference : pair.other, left ? pair.other : pair.reference, geometry_,
-                 shape.window * shape.window, {left, !left}, execution, pair_);
+    pair_.prepare(left ? pair.reference : pair.other, left ? pair.other : pair.reference, geometry_,
+                  shape.window * shape.window, {left, !left}, execution);
     settings_.radius = shape.window / 2;
     settings_.index_bits = 2 * index_shift;
     const auto& planes = pair_.grey_8;

@@ -264,8 +264,7 @@ TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
   const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, 89, 37);
   PreparedPair pair;
   const MethodParameters parameters = options.resolved();
-  prepare_pair(left, right, geometry, parameters.window_px * parameters.window_px, {}, execution,
-               pair);
+  pair.prepare(left, right, geometry, parameters.window_px * parameters.window_px, {}, execution);
   ChainInput input;
   input.pair = &pair;
   DisparityMap whole(89, 37);

@@ -45,27 +45,13 @@ Stages local_stopping_stages(const MethodParameters& parameters, const Aggregati
 }
 
 Stages bayes_stages(const MethodParameters& parameters, const AggregationPlace& place) {
-  return uses_fixed_energies(parameters)
-             ? make_max_product_stages(parameters, place.geometry, place.height,
-                                       {.volume = place.coarser, .blocks = place.coarser_blocks},
-                                       place.edges, place.blocks, place.plane)
-         : parameters.prior == Prior::kQuadratic
-             ? make_quadratic_bayes_stages(parameters, place.geometry, place.height, place.coarser,
-                                           place.edges, place.plane)
-             : make_bayes_stages(parameters, place.geometry, place.height, place.coarser,
-                                 place.edges, place.plane);
+  return uses_fixed_energies(parameters)         ? make_max_product_stages(parameters, place)
+         : parameters.prior == Prior::kQuadratic ? make_quadratic_bayes_stages(parameters, place)
+                                                 : make_bayes_stages(parameters, place);
 }
 
-}  // namespace
-
-std::span<const CellAggregation> aggregation_table() {
-  static const std::array table = {
-      CellAggregation{.key = Aggregation::kNone,
-                      .name = "none",
-                      .description = "each pixel alone",
-                      .options = {}},
-      CellAggregation{
-          .key = Aggregation::kBox,
+CellAggregation box() {
+  return {.key = Aggregation::kBox,
           .name = "box",
           .description = "mean over a square window",
           .options = {"window", "border"},
@@ -77,7 +63,51 @@ std::span<const CellAggregation> aggregation_table() {
           .make_stages =
               [](const MethodParameters& parameters, const AggregationPlace& place) {
                 return make_box_mean_stages(place.geometry, place.height, parameters.window_px / 2);
-              }},
+              }};
+}
+
+CellAggregation local_stopping() {
+  return {.key = Aggregation::kLocalStopping,
+          .name = "local-stopping",
+          .description = "diffusion that stops where certainty would fall",
+          .options = {"iterations", "final-iterations", "lambda", "certainty", "sigma-measurement",
+                      "edge-weight", "edge-contrast", "edge-diffusion"},
+          .is_iterative = true,
+          .reach = iterations_reach,
+          .confidence =
+              [](const MethodParameters& parameters) {
+                return parameters.certainty == Certainty::kMargin ? ConfidenceMeasure::kMargin
+                                                                  : ConfidenceMeasure::kEntropy;
+              },
+          .make_stages = local_stopping_stages};
+}
+
+CellAggregation bayes() {
+  return {
+      .key = Aggregation::kBayes,
+      .name = "bayes",
+      .description = "neighbours support similar disparities",
+      .options = {"iterations", "final-iterations", "mu", "prior", "sigma-prior", "epsilon-prior",
+                  "prior-growth", "prior-smoothing", "level-weight", "slant-penalty", "edge-weight",
+                  "edge-contrast", "edge-diffusion", "sigma-measurement", "epsilon-measurement",
+                  "candidate-blocks", "pruned-levels"},
+      .natural_cost = MatchCost::kContaminated,
+      .cells = CellMeaning::kLikelihood,
+      .is_iterative = true,
+      .reach = iterations_reach,
+      .confidence = [](const MethodParameters&) { return ConfidenceMeasure::kProbability; },
+      .make_stages = bayes_stages};
+}
+
+}  // namespace
+
+std::span<const CellAggregation> aggregation_table() {
+  static const std::array table = {
+      CellAggregation{.key = Aggregation::kNone,
+                      .name = "none",
+                      .description = "each pixel alone",
+                      .options = {}},
+      box(),
       CellAggregation{.key = Aggregation::kGaussian,
                       .name = "gaussian",
                       .description = "mean weighted by a Gaussian",
@@ -115,35 +145,8 @@ std::span<const CellAggregation> aggregation_table() {
                       .coarser_use = CoarserUse::kStart,
                       .reach = iterations_reach,
                       .make_stages = diffusion_stages},
-      CellAggregation{
-          .key = Aggregation::kLocalStopping,
-          .name = "local-stopping",
-          .description = "diffusion that stops where certainty would fall",
-          .options = {"iterations", "final-iterations", "lambda", "certainty", "sigma-measurement",
-                      "edge-weight", "edge-contrast", "edge-diffusion"},
-          .is_iterative = true,
-          .reach = iterations_reach,
-          .confidence =
-              [](const MethodParameters& parameters) {
-                return parameters.certainty == Certainty::kMargin ? ConfidenceMeasure::kMargin
-                                                                  : ConfidenceMeasure::kEntropy;
-              },
-          .make_stages = local_stopping_stages},
-      CellAggregation{
-          .key = Aggregation::kBayes,
-          .name = "bayes",
-          .description = "neighbours support similar disparities",
-          .options = {"iterations", "final-iterations", "mu", "prior", "sigma-prior",
-                      "epsilon-prior", "prior-growth", "prior-smoothing", "level-weight",
-                      "slant-penalty", "edge-weight", "edge-contrast", "edge-diffusion",
-                      "sigma-measurement", "epsilon-measurement", "candidate-blocks",
-                      "pruned-levels"},
-          .natural_cost = MatchCost::kContaminated,
-          .cells = CellMeaning::kLikelihood,
-          .is_iterative = true,
-          .reach = iterations_reach,
-          .confidence = [](const MethodParameters&) { return ConfidenceMeasure::kProbability; },
-          .make_stages = bayes_stages},
+      local_stopping(),
+      bayes(),
   };
   return table;
 }

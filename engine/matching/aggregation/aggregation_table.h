@@ -6,10 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/aggregation/aggregation_place.h"
 #include "engine/matching/costs/stage_cost.h"
-#include "engine/matching/levels/candidate_blocks.h"
-#include "engine/matching/levels/level_volume.h"
 #include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "engine/matching/selection/stage_cell_selection.h"
@@ -17,17 +15,6 @@
 #include "scheduler/row_stage.h"
 
 namespace vantage {
-
-/// The context of an aggregation: one level of one map.
-struct AggregationPlace {
-  const kernels::CandidateGeometry& geometry;
-  int height = 0;
-  kernels::CandidatePlane plane = {};    ///< of a two-dimensional search
-  const EdgeWeights* edges = nullptr;    ///< null: neighbours have equal weights
-  const LevelVolume* coarser = nullptr;  ///< result of the next coarser level; null: none
-  const CandidateBlocks* coarser_blocks = nullptr;
-  const CandidateBlocks* blocks = nullptr;  ///< null: all candidates are searched
-};
 
 /// Reach of an aggregation, in its own unit.
 struct AggregationReach {

@@ -51,17 +51,17 @@ float neutral_state(Form form) { return form == Form::kHalf ? 1 : 0; }
 
 class BayesStage final : public BayesStepStage<float> {
  public:
-  BayesStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-             int height, Form form, BayesState state, const EdgeWeightPlanes* edges,
-             const kernels::CandidatePlane& plane)
-      : BayesStepStage(geometry, height, form == Form::kStart, neutral_state(form)),
+  /// iteration: 0: the start.
+  BayesStage(const MethodParameters& parameters, const AggregationPlace& place, int iteration,
+             Form form, BayesState state)
+      : BayesStepStage(place.geometry, place.height, form == Form::kStart, neutral_state(form)),
         form_(form),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
-        taps_(prior_taps(parameters, geometry.count)),
+        taps_(prior_taps(parameters, place.geometry.count)),
         floor_(static_cast<float>(parameters.epsilon_prior)),
-        edges_(edges),
-        plane_(plane) {}
+        edges_(weights_of_iteration(place.edges, iteration)),
+        plane_(place.plane) {}
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     return vantage::column_work(kernel_work(), count());
@@ -129,15 +129,14 @@ class BayesStage final : public BayesStepStage<float> {
 /// level.
 class BayesFromCoarserStage final : public FromCoarserStage<float> {
  public:
-  BayesFromCoarserStage(const MethodParameters& parameters,
-                        const kernels::CandidateGeometry& geometry, int height, BayesState state,
-                        const CoarserResult& coarser, const kernels::CandidatePlane& plane)
-      : FromCoarserStage(geometry, height, coarser, nullptr),
+  BayesFromCoarserStage(const MethodParameters& parameters, const AggregationPlace& place,
+                        BayesState state)
+      : FromCoarserStage(place.geometry, place.height, {place.coarser}, nullptr),
         state_(state),
         mu_(static_cast<float>(parameters.mu)),
-        taps_(prior_taps(parameters, geometry.count)),
+        taps_(prior_taps(parameters, place.geometry.count)),
         floor_(static_cast<float>(parameters.epsilon_prior)),
-        plane_(plane) {}
+        plane_(place.plane) {}
 
   [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
@@ -186,22 +185,19 @@ class BayesFromCoarserStage final : public FromCoarserStage<float> {
 }  // namespace
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
-    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const LevelVolume* coarser, const EdgeWeights* edges, const kernels::CandidatePlane& plane) {
-  const bool half = parameters.mu == 0.5 && edges == nullptr &&
+    const MethodParameters& parameters, const AggregationPlace& place) {
+  const bool half = parameters.mu == 0.5 && place.edges == nullptr &&
                     parameters.epsilon_prior >= kMinEpsilonOfProductForm;
   const BayesState between = half ? BayesState::kSmoothed : BayesState::kLogSmoothed;
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   for (int i = 0; i <= parameters.iterations; ++i) {
     const Form form = i == 0 ? Form::kStart : half ? Form::kHalf : Form::kGeneral;
     const BayesState state = i == parameters.iterations ? BayesState::kProbability : between;
-    if (i == 0 && coarser != nullptr) {
-      stages.push_back(std::make_unique<BayesFromCoarserStage>(parameters, geometry, height, state,
-                                                               CoarserResult{coarser}, plane));
-      continue;
+    if (i == 0 && place.coarser != nullptr) {
+      stages.push_back(std::make_unique<BayesFromCoarserStage>(parameters, place, state));
+    } else {
+      stages.push_back(std::make_unique<BayesStage>(parameters, place, i, form, state));
     }
-    stages.push_back(std::make_unique<BayesStage>(parameters, geometry, height, form, state,
-                                                  weights_of_iteration(edges, i), plane));
   }
   return stages;
 }

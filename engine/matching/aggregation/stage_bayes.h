@@ -3,10 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "engine/matching/aggregation/edge_weights.h"
-#include "engine/matching/levels/level_volume.h"
+#include "engine/matching/aggregation/aggregation_place.h"
 #include "engine/matching/parameters/method_parameters.h"
-#include "kernels/candidates.h"
 #include "scheduler/row_stage.h"
 
 namespace vantage {
@@ -16,21 +14,18 @@ namespace vantage {
 /// The output cells are float probabilities, geometry.lanes() per column, that sum to 1; padding
 /// lanes hold 0.
 ///
-/// `coarser`: the final probabilities of the next coarser level (stage_level_likelihoods); must
-/// outlive the stages. The start is then made from it instead of the likelihoods, which only the
-/// iterations read. Null: no coarser level.
+/// `place.coarser`: the final probabilities of the next coarser level (stage_level_likelihoods).
+/// The start is then made from it instead of the likelihoods, which only the iterations read.
 ///
-/// `edges`: weights of neighbours on this level (7.3), p ∝ p0 · Π pS^(μ·w) with w = 1 for the
-/// column itself; must outlive the stages. Null: all weights are 1.
+/// `place.edges`: weights of neighbours on this level (7.3), p ∝ p0 · Π pS^(μ·w) with w = 1 for the
+/// column itself.
 ///
-/// `plane`: of a two-dimensional search; the prior then depends on the length of an offset.
+/// `place.plane`: of a two-dimensional search; the prior then depends on the length of an offset.
 ///
 /// μ = ½ uses the form without exponentials and logarithms, unless neighbours are weighted or εP is
 /// so small (below 1e-7) that the product of five smoothed probabilities could leave the range of
 /// normal floats.
 std::vector<std::unique_ptr<scheduler::RowStage>> make_bayes_stages(
-    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const LevelVolume* coarser = nullptr, const EdgeWeights* edges = nullptr,
-    const kernels::CandidatePlane& plane = {});
+    const MethodParameters& parameters, const AggregationPlace& place);
 
 }  // namespace vantage

@@ -16,10 +16,10 @@ namespace vantage {
 /// loading its costs.
 ///
 /// Output cells are int32_t, geometry.lanes() per column: the sum times 4^shift for 8-bit images,
-/// in the unit of prepare_pair() for float ones. A cell whose partner is outside the other image is
-/// 0 if a candidate's window of `radius` columns reaches it, and undefined farther out. `partner`
-/// is mirrored for a left reference (geometry.direction = −1), plain for a right one; its margins
-/// are those of prepare_pair(). Both planes must outlive the stage.
+/// in the unit of PreparedPair::prepare() for float ones. A cell whose partner is outside the other
+/// image is 0 if a candidate's window of `radius` columns reaches it, and undefined farther out.
+/// `partner` is mirrored for a left reference (geometry.direction = −1), plain for a right one; its
+/// margins are those of PreparedPair::prepare(). Both planes must outlive the stage.
 std::unique_ptr<scheduler::RowStage> make_column_ssd_stage(
     const IntensityPlane<std::uint8_t>& reference, const IntensityPlane<std::uint8_t>& partner,
     const kernels::CandidateGeometry& geometry, int height, int radius, int shift);

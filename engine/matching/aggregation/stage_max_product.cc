@@ -21,11 +21,12 @@ using kernels::FixedWeight;
 /// Properties of the prior that all stages share.
 class PriorRises {
  public:
-  PriorRises(const MethodParameters& parameters, int count, const kernels::CandidatePlane& plane)
-      : plane_(plane),
+  PriorRises(const MethodParameters& parameters, const AggregationPlace& place)
+      : plane_(place.plane),
         rises_(parameters.prior == Prior::kImpulse
                    ? std::vector<FixedEnergy>{}
-                   : EnergyFormat(parameters).prior_rises(parameters.sigma_prior, count)),
+                   : EnergyFormat(parameters)
+                         .prior_rises(parameters.sigma_prior, place.geometry.count)),
         ceiling_(EnergyFormat(parameters).ceiling()) {}
 
   [[nodiscard]] int radius() const { return static_cast<int>(rises_.size()); }
@@ -43,18 +44,17 @@ class PriorRises {
 
 class MaxProductStage final : public BayesStepStage<FixedEnergy> {
  public:
-  /// is_start: the state before the first iteration. smooths: iterations follow.
-  MaxProductStage(const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-                  int height, bool is_start, bool smooths, const EdgeWeightPlanes* edges,
-                  const CandidateBlocks* blocks, const kernels::CandidatePlane& plane)
-      : BayesStepStage(cell_geometry(geometry, blocks), height, is_start, 0),
-        smooths_(smooths),
+  /// iteration: 0: the start, the state before the first one.
+  MaxProductStage(const MethodParameters& parameters, const AggregationPlace& place, int iteration)
+      : BayesStepStage(cell_geometry(place.geometry, place.blocks), place.height, iteration == 0,
+                       0),
+        smooths_(iteration < parameters.iterations),
         mu_(kernels::fixed_weight(static_cast<float>(parameters.mu))),
-        rises_(parameters, geometry.count, plane),
-        edges_(edges),
-        blocks_(blocks) {
-    if (blocks != nullptr) {
-      stars_.emplace(*blocks, EnergyFormat(parameters).ceiling());
+        rises_(parameters, place),
+        edges_(weights_of_iteration(place.edges, iteration)),
+        blocks_(place.blocks) {
+    if (blocks_ != nullptr) {
+      stars_.emplace(*blocks_, EnergyFormat(parameters).ceiling());
     }
   }
 
@@ -136,7 +136,7 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
     kernels::max_product_row(row);
   }
 
-  bool smooths_;
+  bool smooths_;  ///< iterations follow
   FixedWeight mu_;
   PriorRises rises_;
   const EdgeWeightPlanes* edges_;
@@ -146,13 +146,11 @@ class MaxProductStage final : public BayesStepStage<FixedEnergy> {
 
 class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
  public:
-  MaxProductFromCoarserStage(const MethodParameters& parameters,
-                             const kernels::CandidateGeometry& geometry, int height, bool smooths,
-                             const CoarserResult& coarser, const CandidateBlocks* blocks,
-                             const kernels::CandidatePlane& plane)
-      : FromCoarserStage(geometry, height, coarser, blocks),
-        smooths_(smooths),
-        rises_(parameters, geometry.count, plane),
+  MaxProductFromCoarserStage(const MethodParameters& parameters, const AggregationPlace& place)
+      : FromCoarserStage(place.geometry, place.height, {place.coarser, place.coarser_blocks},
+                         place.blocks),
+        smooths_(parameters.iterations > 0),
+        rises_(parameters, place),
         byte_steps_(EnergyFormat(parameters).of_result()) {}
 
   [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
@@ -203,21 +201,14 @@ class MaxProductFromCoarserStage final : public FromCoarserStage<FixedEnergy> {
 }  // namespace
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_max_product_stages(
-    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const CoarserResult& coarser, const EdgeWeights* edges, const CandidateBlocks* blocks,
-    const kernels::CandidatePlane& plane) {
+    const MethodParameters& parameters, const AggregationPlace& place) {
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   for (int i = 0; i <= parameters.iterations; ++i) {
-    const bool is_start = i == 0;
-    const bool smooths = i < parameters.iterations;
-    if (is_start && coarser.volume != nullptr) {
-      stages.push_back(std::make_unique<MaxProductFromCoarserStage>(
-          parameters, geometry, height, smooths, coarser, blocks, plane));
-      continue;
+    if (i == 0 && place.coarser != nullptr) {
+      stages.push_back(std::make_unique<MaxProductFromCoarserStage>(parameters, place));
+    } else {
+      stages.push_back(std::make_unique<MaxProductStage>(parameters, place, i));
     }
-    stages.push_back(std::make_unique<MaxProductStage>(parameters, geometry, height, is_start,
-                                                       smooths, weights_of_iteration(edges, i),
-                                                       blocks, plane));
   }
   return stages;
 }

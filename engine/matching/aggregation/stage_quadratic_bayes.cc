@@ -15,8 +15,7 @@ namespace {
 
 /// The parts of rows that all stages of a level share.
 kernels::QuadraticStepRow quadratic_row(const MethodParameters& parameters,
-                                        const kernels::CandidateGeometry& geometry, bool smooths,
-                                        const kernels::CandidatePlane& plane) {
+                                        const AggregationPlace& place, bool smooths) {
   constexpr double kMaxCurvature = 1e20;
   const double sigma = parameters.sigma_prior;
   kernels::QuadraticStepRow row;
@@ -25,9 +24,9 @@ kernels::QuadraticStepRow quadratic_row(const MethodParameters& parameters,
   row.largest_term = parameters.prior_smoothing == PriorSmoothing::kMaximum;
   row.smooths = smooths;
   row.mu = static_cast<float>(parameters.mu);
-  row.count = geometry.count;
-  row.source_pitch = row.output_pitch = geometry.lanes();
-  row.plane = plane;
+  row.count = place.geometry.count;
+  row.source_pitch = row.output_pitch = place.geometry.lanes();
+  row.plane = place.plane;
   return row;
 }
 
@@ -39,10 +38,12 @@ scheduler::ColumnWork work_of(const kernels::QuadraticStepRow& row, bool is_star
 
 class QuadraticBayesStage final : public BayesStepStage<float> {
  public:
-  QuadraticBayesStage(const kernels::QuadraticStepRow& row,
-                      const kernels::CandidateGeometry& geometry, int height, bool is_start,
-                      const EdgeWeightPlanes* edges)
-      : BayesStepStage(geometry, height, is_start, 0), row_(row), edges_(edges) {}
+  /// iteration: 0: the start.
+  QuadraticBayesStage(const kernels::QuadraticStepRow& row, const AggregationPlace& place,
+                      int iteration)
+      : BayesStepStage(place.geometry, place.height, iteration == 0, 0),
+        row_(row),
+        edges_(weights_of_iteration(place.edges, iteration)) {}
 
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     return work_of(row_, is_start());
@@ -78,10 +79,8 @@ class QuadraticBayesStage final : public BayesStepStage<float> {
 /// level.
 class QuadraticFromCoarserStage final : public FromCoarserStage<float> {
  public:
-  QuadraticFromCoarserStage(const kernels::QuadraticStepRow& row,
-                            const kernels::CandidateGeometry& geometry, int height,
-                            const CoarserResult& coarser)
-      : FromCoarserStage(geometry, height, coarser, nullptr), row_(row) {}
+  QuadraticFromCoarserStage(const kernels::QuadraticStepRow& row, const AggregationPlace& place)
+      : FromCoarserStage(place.geometry, place.height, {place.coarser}, nullptr), row_(row) {}
 
   [[nodiscard]] std::string_view name() const override { return "Bayes start from coarser"; }
   [[nodiscard]] scheduler::ColumnWork column_work() const override { return work_of(row_, true); }
@@ -115,19 +114,16 @@ class QuadraticFromCoarserStage final : public FromCoarserStage<float> {
 }  // namespace
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_quadratic_bayes_stages(
-    const MethodParameters& parameters, const kernels::CandidateGeometry& geometry, int height,
-    const LevelVolume* coarser, const EdgeWeights* edges, const kernels::CandidatePlane& plane) {
+    const MethodParameters& parameters, const AggregationPlace& place) {
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   for (int i = 0; i <= parameters.iterations; ++i) {
     const kernels::QuadraticStepRow row =
-        quadratic_row(parameters, geometry, i < parameters.iterations, plane);
-    if (i == 0 && coarser != nullptr) {
-      stages.push_back(std::make_unique<QuadraticFromCoarserStage>(row, geometry, height,
-                                                                   CoarserResult{coarser}));
-      continue;
+        quadratic_row(parameters, place, i < parameters.iterations);
+    if (i == 0 && place.coarser != nullptr) {
+      stages.push_back(std::make_unique<QuadraticFromCoarserStage>(row, place));
+    } else {
+      stages.push_back(std::make_unique<QuadraticBayesStage>(row, place, i));
     }
-    stages.push_back(std::make_unique<QuadraticBayesStage>(row, geometry, height, i == 0,
-                                                           weights_of_iteration(edges, i)));
   }
   return stages;
 }

@@ -123,9 +123,11 @@ std::unique_ptr<scheduler::RowStage> MatchChain::plain_costs(const MethodParamet
   auto costs = make_cost_stage(parameters, of_candidates(first_candidate, count), *input.reference,
                                input.partners, meaning, height_);
   if (!input.prior_px.empty()) {
-    costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning, input.prior_px,
-                                       static_cast<float>(input.prior_weight),
-                                       cost_of(parameters).max_contrast, first_candidate);
+    costs = make_disparity_prior_stage(std::move(costs), geometry_, meaning,
+                                       {.prior_px = input.prior_px,
+                                        .weight = static_cast<float>(input.prior_weight),
+                                        .max_contrast = cost_of(parameters).max_contrast,
+                                        .first_candidate = first_candidate});
   }
   return costs;
 }

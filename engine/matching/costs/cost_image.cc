@@ -29,7 +29,7 @@ void CostImage::prepare(const Photograph& photograph, const MethodParameters& pa
   set_up(photograph, parameters, is_partner ? use.phases : 1);
   // Whole columns last: those are what the image is as a reference.
   for (int phase = phases_ - 1; phase >= 0; --phase) {
-    prepare_phase(phase, photograph, false, parameters, geometry, use, execution);
+    prepare_phase({photograph, phase}, parameters, geometry, use, execution);
   }
 }
 
@@ -39,24 +39,23 @@ void CostImage::prepare_samples(std::span<const Photograph> at_phases,
                                 Execution& execution) {
   set_up(at_phases.front(), parameters, static_cast<int>(at_phases.size()));
   for (int phase = phases_ - 1; phase >= 0; --phase) {
-    prepare_phase(phase, at_phases[static_cast<std::size_t>(phase)], true, parameters, geometry,
+    prepare_phase({at_phases[static_cast<std::size_t>(phase)], phase, true}, parameters, geometry,
                   use, execution);
   }
 }
 
-void CostImage::prepare_phase(int phase, const Photograph& photograph, bool is_at_phase,
-                              const MethodParameters& parameters,
+void CostImage::prepare_phase(const Phase& phase, const MethodParameters& parameters,
                               const kernels::CandidateGeometry& geometry, const CostImageUse& use,
                               Execution& execution) {
-  planes_->prepare({photograph,
+  planes_->prepare({phase.photograph,
                     use.intensity_changes,
                     channels_,
                     margins_of(geometry),
                     use.as_partner_of_left,
                     use.as_partner_of_right,
-                    {phase, phases_},
+                    {phase.index, phases_},
                     execution,
-                    is_at_phase},
+                    phase.is_sampled},
                    parameters);
 }
 

@@ -62,10 +62,14 @@ class CostImage {
 
  private:
   void set_up(const Photograph& photograph, const MethodParameters& parameters, int phases);
-  /// `is_at_phase`: the photograph has been sampled at the columns of the phase.
-  void prepare_phase(int phase, const Photograph& photograph, bool is_at_phase,
-                     const MethodParameters& parameters, const kernels::CandidateGeometry& geometry,
-                     const CostImageUse& use, Execution& execution);
+  struct Phase {
+    const Photograph& photograph;
+    int index;
+    bool is_sampled = false;  ///< the photograph has been sampled at the columns of the phase
+  };
+  void prepare_phase(const Phase& phase, const MethodParameters& parameters,
+                     const kernels::CandidateGeometry& geometry, const CostImageUse& use,
+                     Execution& execution);
 
   int width_ = 0;
   int height_ = 0;

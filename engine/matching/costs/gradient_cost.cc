@@ -100,7 +100,8 @@ void GradientPlanes::prepare(const PlaneSource& source, const MethodParameters& 
     }
     if (parameters.prefilter) {
       smooth_intensities_[c].resize(width, height, kFilterMarginBefore, kFilterMarginAfter);
-      smooth_intensities(intensities_[c], width, height, source.execution, smooth_intensities_[c]);
+      smooth_intensities({intensities_[c], width, height}, source.execution,
+                         smooth_intensities_[c]);
     }
   });
   const auto alpha = static_cast<float>(parameters.alpha);
@@ -108,7 +109,7 @@ void GradientPlanes::prepare(const PlaneSource& source, const MethodParameters& 
   source.for_each_channel_row([&](std::size_t c, int y) {
     const auto work = source.execution.scratch().lease(sizeof(float) * filter_work_floats(width));
     auto& [gx, gy, half_norm] = gradients[c];
-    gradient_row(intensities[c], width, height, y, parameters.gradient,
+    gradient_row({intensities[c], width, height}, y, parameters.gradient,
                  reinterpret_cast<float*>(work.data()), gx.plain.row(y), gy.plain.row(y));
     kernels::evidence_planes_row({gx.plain.row(y), gy.plain.row(y), half_norm.plain.row(y), width},
                                  alpha, evidence_norm(parameters));

@@ -55,13 +55,12 @@ FilterTaps gaussian_taps() {
 }
 
 /// Rows y − 2 … y + 2, the border replicated.
-kernels::SeparableFilter rows_around(const IntensityPlane<float>& plane, int width, int height,
-                                     int y) {
+kernels::SeparableFilter rows_around(const FilterSource& image, int y) {
   kernels::SeparableFilter filter;
-  filter.width = width;
+  filter.width = image.width;
   for (int v = -kernels::kFilterRadius; v <= kernels::kFilterRadius; ++v) {
     filter.rows[static_cast<std::size_t>(v + kernels::kFilterRadius)] =
-        plane.row(std::clamp(y + v, 0, height - 1));
+        image.intensities.row(std::clamp(y + v, 0, image.height - 1));
   }
   return filter;
 }
@@ -72,13 +71,13 @@ std::size_t filter_work_floats(int width) {
   return static_cast<std::size_t>(width) + 3 * kernels::kLaneMultiple;
 }
 
-void smooth_intensities(const IntensityPlane<float>& intensities, int width, int height,
-                        Execution& execution, IntensityPlane<float>& smooth) {
+void smooth_intensities(const FilterSource& image, Execution& execution,
+                        IntensityPlane<float>& smooth) {
   const FilterTaps taps = gaussian_taps();
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    const auto work = execution.scratch().lease(sizeof(float) * filter_work_floats(width));
+  execution.for_each_band(image.height, [&](int first_row, int end_row) {
+    const auto work = execution.scratch().lease(sizeof(float) * filter_work_floats(image.width));
     for (int y = first_row; y < end_row; ++y) {
-      kernels::SeparableFilter filter = rows_around(intensities, width, height, y);
+      kernels::SeparableFilter filter = rows_around(image, y);
       filter.down = taps;
       filter.along = taps;
       kernels::separable_filter_row(filter, reinterpret_cast<float*>(work.data()), smooth.row(y));
@@ -87,10 +86,10 @@ void smooth_intensities(const IntensityPlane<float>& intensities, int width, int
   });
 }
 
-void gradient_row(const IntensityPlane<float>& intensities, int width, int height, int y,
-                  GradientFilter filter, float* work, float* gx, float* gy) {
+void gradient_row(const FilterSource& image, int y, GradientFilter filter, float* work, float* gx,
+                  float* gy) {
   const auto& [derivative, across] = filter_of(filter);
-  kernels::SeparableFilter row = rows_around(intensities, width, height, y);
+  kernels::SeparableFilter row = rows_around(image, y);
   row.down = across;
   row.along = derivative;
   kernels::separable_filter_row(row, work, gx);

@@ -16,16 +16,22 @@ inline constexpr int kFilterMarginAfter = 4 + kernels::kLaneMultiple;
 /// Floats of working memory for filtering one row.
 std::size_t filter_work_floats(int width);
 
-/// Gaussian prefilter of chapter 5: σ = ½, radius 2. All planes have the size width × height and
-/// at least the margins above. The margins of `intensities` must be filled; those of `smooth` are
-/// written. The border is replicated. Identical for any `execution`.
-void smooth_intensities(const IntensityPlane<float>& intensities, int width, int height,
-                        Execution& execution, IntensityPlane<float>& smooth);
+/// An image to filter: at least the margins above, which must be filled.
+struct FilterSource {
+  const IntensityPlane<float>& intensities;
+  int width;
+  int height;
+};
+
+/// Gaussian prefilter of chapter 5: σ = ½, radius 2. `smooth`: size and margins as `image`; margins
+/// are written. The border is replicated. Identical for any `execution`.
+void smooth_intensities(const FilterSource& image, Execution& execution,
+                        IntensityPlane<float>& smooth);
 
 /// Components of the gradient (5.9) of row y: correlations with the derivative filters of EQUATIONS
-/// §2, borders replicated. `intensities`: size and margins as above. gx and gy may be written up to
-/// a lane multiple past the width. `work`: filter_work_floats().
-void gradient_row(const IntensityPlane<float>& intensities, int width, int height, int y,
-                  GradientFilter filter, float* work, float* gx, float* gy);
+/// §2, borders replicated. gx and gy may be written up to a lane multiple past the width. `work`:
+/// filter_work_floats().
+void gradient_row(const FilterSource& image, int y, GradientFilter filter, float* work, float* gx,
+                  float* gy);
 
 }  // namespace vantage

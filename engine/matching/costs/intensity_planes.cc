@@ -109,14 +109,14 @@ template class IntensityPlane<std::uint16_t>;
 template class IntensityPlane<std::uint32_t>;
 template class IntensityPlane<float>;
 
-void prepare_pair(const Photograph& left, const Photograph& right,
-                  const kernels::CandidateGeometry& geometry, int window_samples,
-                  PlanesNeeded needed, Execution& execution, PreparedPair& pair) {
+void PreparedPair::prepare(const Photograph& left, const Photograph& right,
+                           const kernels::CandidateGeometry& geometry, int window_samples,
+                           PlanesNeeded needed, Execution& execution) {
   const int width = left.width();
   const int height = left.height();
-  pair.is_8_bit = is_8_bit_grey(left) && is_8_bit_grey(right);
-  if (pair.is_8_bit) {
-    IntensityPlanes<std::uint8_t>& planes = pair.grey_8;
+  is_8_bit = is_8_bit_grey(left) && is_8_bit_grey(right);
+  if (is_8_bit) {
+    IntensityPlanes<std::uint8_t>& planes = grey_8;
     resize_planes(planes, height, geometry, needed);
     const auto& left_pixels = std::get<Image<std::uint8_t>>(left.pixels);
     const auto& right_pixels = std::get<Image<std::uint8_t>>(right.pixels);
@@ -131,13 +131,13 @@ void prepare_pair(const Photograph& left, const Photograph& right,
     });
     return;
   }
-  IntensityPlanes<float>& planes = pair.grey_float;
+  IntensityPlanes<float>& planes = grey_float;
   resize_planes(planes, height, geometry, needed);
   const Bounds of_left = fill_grey(left, execution, planes.left);
   const Bounds of_right = fill_grey(right, execution, planes.right);
   const float scale = cost_scale(
       {std::min(of_left.low, of_right.low), std::max(of_left.high, of_right.high)}, window_samples);
-  pair.cost_unit = 1 / (scale * scale);
+  cost_unit = 1 / (scale * scale);
   execution.for_each_band(height, [&](int first_row, int end_row) {
     for (int y = first_row; y < end_row; ++y) {
       scale_row(scale, width, planes.left.row(y));

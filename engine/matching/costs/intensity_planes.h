@@ -61,14 +61,14 @@ struct PreparedPair {
   float cost_unit = 1;  ///< grey levels² per unit of squared difference of the float planes
   IntensityPlanes<std::uint8_t> grey_8;
   IntensityPlanes<float> grey_float;
-};
 
-/// Fills `pair` from two photographs of equal size. Float planes hold intensities times a power of
-/// two, the largest for which squared differences stay below kernels::kFloatSquareLimit and the sum
-/// of `window_samples` of them below 2³¹. Costs are then integers with the finest possible step,
-/// and their sums are exact. Identical for any `execution`.
-void prepare_pair(const Photograph& left, const Photograph& right,
-                  const kernels::CandidateGeometry& geometry, int window_samples,
-                  PlanesNeeded needed, Execution& execution, PreparedPair& pair);
+  /// From two photographs of equal size. Float planes hold intensities times a power of two, the
+  /// largest for which squared differences stay below kernels::kFloatSquareLimit and the sum of
+  /// `window_samples` of them below 2³¹. Costs are then integers with the finest possible step, and
+  /// their sums are exact. Identical for any `execution`.
+  void prepare(const Photograph& left, const Photograph& right,
+               const kernels::CandidateGeometry& geometry, int window_samples, PlanesNeeded needed,
+               Execution& execution);
+};
 
 }  // namespace vantage

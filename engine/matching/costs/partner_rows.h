@@ -71,6 +71,7 @@ class PartnerRows {
       std::size_t used = kPlanes) const {
     const auto& of_reference = static_cast<const Planes&>(reference_.planes()).*planes;
     auto row = empty_pairs<T, kPlanes>(columns, channels());
+    const Part part{y, columns, memory};
     for (int c = 0; c < row.channels; ++c) {
       // With a colour image, a grey image has the same intensity in all channels.
       set_channel(
@@ -79,7 +80,7 @@ class PartnerRows {
             const CostImage& image = (&partner_)[phase];
             return (static_cast<const Planes&>(image.planes()).*planes)[channel_of(image, c)];
           },
-          y, columns, used, memory, row.channel[static_cast<std::size_t>(c)]);
+          part, used, row.channel[static_cast<std::size_t>(c)]);
     }
     return row;
   }
@@ -94,11 +95,17 @@ class PartnerRows {
         [&](int phase) -> const auto& {
           return static_cast<const Planes&>((&partner_)[phase].planes()).*planes;
         },
-        y, columns, kPlanes, memory, row.channel[0]);
+        {y, columns, memory}, kPlanes, row.channel[0]);
     return row;
   }
 
  private:
+  /// Part of a row to pair, with the memory for what is gathered.
+  struct Part {
+    int y;
+    scheduler::Range columns;
+    GatherMemory* memory;
+  };
   template <typename T, std::size_t kPlanes>
   [[nodiscard]] kernels::FeaturePairs<T, static_cast<int>(kPlanes)> empty_pairs(
       scheduler::Range columns, int channels) const {
@@ -112,9 +119,9 @@ class PartnerRows {
   }
   /// of_partner(phase): the planes of a line between rows; phase 0 unless there are epipolar lines.
   template <typename T, std::size_t kPlanes, typename OfPartner, typename Channel>
-  void set_channel(const PlaneSet<T, kPlanes>& of_reference, const OfPartner& of_partner, int y,
-                   scheduler::Range columns, std::size_t used, GatherMemory* memory,
-                   Channel& channel) const {
+  void set_channel(const PlaneSet<T, kPlanes>& of_reference, const OfPartner& of_partner,
+                   const Part& part, std::size_t used, Channel& channel) const {
+    const auto [y, columns, memory] = part;
     const auto samples = [&](int phase, std::size_t p, int row) -> const T* {
       return of_partner(phase)[p].of_partner(mirrored(), partner_.phases()).row(row);
     };

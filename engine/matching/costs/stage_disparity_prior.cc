@@ -12,16 +12,12 @@ class DisparityPriorStage final : public scheduler::RowStage {
  public:
   DisparityPriorStage(std::unique_ptr<scheduler::RowStage> costs,
                       const kernels::CandidateGeometry& geometry, CellMeaning meaning,
-                      ImageView<const float> prior_px, float weight, float max_contrast,
-                      int first_candidate)
+                      const PriorPull& pull)
       : RowStage(costs->extent()),
         costs_(std::move(costs)),
         geometry_(geometry),
         meaning_(meaning),
-        prior_px_(prior_px),
-        weight_(weight),
-        max_contrast_(max_contrast),
-        first_candidate_(first_candidate) {}
+        pull_(pull) {}
 
   [[nodiscard]] std::string_view name() const override { return "cost with prior"; }
   [[nodiscard]] std::size_t bytes_per_column() const override { return costs_->bytes_per_column(); }
@@ -44,15 +40,15 @@ class DisparityPriorStage final : public scheduler::RowStage {
   void make_row(const scheduler::RowTask& task) const override {
     costs_->make_row(task);
     const kernels::DisparityPriorRow row{
-        .prior_px = prior_px_.row(task.y) + task.columns.begin,
+        .prior_px = pull_.prior_px.row(task.y) + task.columns.begin,
         .columns = task.columns.size(),
         .lanes = static_cast<int>(bytes_per_column() / sizeof(float)),
         .count = geometry_.count,
         .disparity_min = geometry_.disparity_min,
         .steps_per_px = geometry_.steps_per_px,
-        .first_candidate = first_candidate_,
-        .weight = weight_,
-        .max_contrast = max_contrast_,
+        .first_candidate = pull_.first_candidate,
+        .weight = pull_.weight,
+        .max_contrast = pull_.max_contrast,
     };
     auto* cells = reinterpret_cast<float*>(task.output);
     if (meaning_ == CellMeaning::kEnergy) {
@@ -66,20 +62,15 @@ class DisparityPriorStage final : public scheduler::RowStage {
   std::unique_ptr<scheduler::RowStage> costs_;
   kernels::CandidateGeometry geometry_;
   CellMeaning meaning_;
-  ImageView<const float> prior_px_;
-  float weight_;
-  float max_contrast_;
-  int first_candidate_;
+  PriorPull pull_;
 };
 
 }  // namespace
 
 std::unique_ptr<scheduler::RowStage> make_disparity_prior_stage(
     std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
-    CellMeaning meaning, ImageView<const float> prior_px, float weight, float max_contrast,
-    int first_candidate) {
-  return std::make_unique<DisparityPriorStage>(std::move(costs), geometry, meaning, prior_px,
-                                               weight, max_contrast, first_candidate);
+    CellMeaning meaning, const PriorPull& pull) {
+  return std::make_unique<DisparityPriorStage>(std::move(costs), geometry, meaning, pull);
 }
 
 }  // namespace vantage

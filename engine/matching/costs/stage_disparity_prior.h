@@ -9,15 +9,20 @@
 
 namespace vantage {
 
+/// Disparities that attract pixels, see kernels/disparity_prior.
+struct PriorPull {
+  /// NaN or outside the range for pixels without a prior; of the size of the costs.
+  ImageView<const float> prior_px;
+  float weight = 1;         ///< ≥ 0
+  float max_contrast = 0;   ///< for energies only
+  int first_candidate = 0;  ///< if cells are likelihoods: the first that the costs hold
+};
+
 /// Source stage: the cells of the source stage `costs`, with every pixel that has a prior disparity
-/// pulled towards it (kernels/disparity_prior). `prior_px`: NaN or outside the range for pixels
-/// without a prior; of the size of `costs`; must outlive the stage. `geometry`: of all candidates;
-/// if cells are likelihoods, `costs` may hold only those from `first_candidate` on. weight ≥ 0;
-/// max_contrast: see kernels/disparity_prior, for energies only. Later stages that read the source
-/// again see the same cells.
+/// pulled towards it. What `pull` views must outlive the stage. `geometry`: of all candidates.
+/// Later stages that read the source again see the same cells.
 std::unique_ptr<scheduler::RowStage> make_disparity_prior_stage(
     std::unique_ptr<scheduler::RowStage> costs, const kernels::CandidateGeometry& geometry,
-    CellMeaning meaning, ImageView<const float> prior_px, float weight, float max_contrast,
-    int first_candidate = 0);
+    CellMeaning meaning, const PriorPull& pull);
 
 }  // namespace vantage

@@ -105,10 +105,10 @@ void PairSearch::prepare_images(const kernels::CandidateGeometry& geometry) {
 
 void PairSearch::prepare_column_ssd(const kernels::CandidateGeometry& geometry) {
   const int window_px = job_.options.parameters.window_px;
-  prepare_pair(*job_.images[0].photograph, *job_.images[1].photograph, geometry,
-               window_px * window_px,
-               {job_.task_of(Side::kLeft).need.any(), job_.task_of(Side::kRight).need.any()},
-               job_.execution, own_.pair);
+  own_.pair.prepare(*job_.images[0].photograph, *job_.images[1].photograph, geometry,
+                    window_px * window_px,
+                    {job_.task_of(Side::kLeft).need.any(), job_.task_of(Side::kRight).need.any()},
+                    job_.execution);
   inputs_[0].pair = inputs_[1].pair = &own_.pair;
 }
 
