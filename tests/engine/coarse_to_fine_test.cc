@@ -224,12 +224,12 @@ TEST_P(CoarseToFine, WholeImageExecutorGivesTheSame) {
   DisparityMap map(37, 29);
   CoarseLevels levels;
   int chains = 0;
-  CoarseToFine({parameters, geometry, {nullptr, &left, {CostPartner{&right}}}},
-               {.outputs = {.disparity_px = map.view()}}, levels, execution,
-               [&](const MatchChain& chain) {
-                 scheduler::run_whole_image(chain.stages());
-                 ++chains;
-               })
+  vantage::CoarseToFine({parameters, geometry, {nullptr, &left, {CostPartner{&right}}}},
+                        {.outputs = {.disparity_px = map.view()}}, levels, execution,
+                        [&](const MatchChain& chain) {
+                          scheduler::run_whole_image(chain.stages());
+                          ++chains;
+                        })
       .search();
   EXPECT_EQ(chains, 1 + 4);
   EXPECT_TRUE(identical(map, maps_of(pair.left, pair.right, options).left.disparity_px));
