@@ -8,6 +8,7 @@
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/windows/window_level.h"
 #include "engine/out_of_memory.h"
+#include "kernels/symmetric_path/symmetric_path.h"
 
 namespace vantage {
 

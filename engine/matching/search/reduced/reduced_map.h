@@ -8,6 +8,7 @@
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/costs/cost_image.h"
 #include "engine/matching/search/coarse_to_fine/coarse_levels.h"
+#include "engine/matching/search/coarse_to_fine/searched_parts.h"
 #include "engine/matching/search/map_search.h"
 #include "engine/matching/windows/coarse_beliefs.h"
 #include "scheduler/range.h"
