@@ -49,12 +49,12 @@ std::string csv_text(const FigureTable& table) {
 }
 
 std::vector<std::string> write_figure(const std::filesystem::path& folder, const BookFigure& figure,
-                                      const FigureContent& content, FigurePictures pictures) {
+                                      const FigureContent& content) {
   std::vector<std::string> names;
   for (const FigurePicture& picture : content.pictures) {
-    names.push_back(
-        file_name(figure, picture.name, pictures == FigurePictures::kSvg ? ".svg" : ".png"));
-    write_drawing(folder / names.back(), picture.drawing);
+    names.push_back(file_name(figure, picture.name, ".svg"));
+    write_text_file(folder / names.back(),
+                    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + picture.drawing.svg());
   }
   const auto write_table = [&](const FigureTable& table) {
     names.push_back(file_name(figure, table.name, ".csv"));

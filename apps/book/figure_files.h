@@ -8,13 +8,11 @@
 
 namespace vantage::apps {
 
-enum class FigurePictures { kSvg, kPng };
-
-/// Writes figure-KEY-NAME.svg (or .png) for each picture, figure-KEY-NAME.csv for each table and
+/// Writes figure-KEY-NAME.svg for each picture, figure-KEY-NAME.csv for each table and
 /// figure-KEY-book.csv for the comparisons to `folder`, which exists. Returns the names of the
 /// files. Throws Error.
 std::vector<std::string> write_figure(const std::filesystem::path& folder, const BookFigure& figure,
-                                      const FigureContent& content, FigurePictures pictures);
+                                      const FigureContent& content);
 
 /// The comparisons as a table.
 FigureTable table_of(const std::vector<BookComparison>& comparisons);

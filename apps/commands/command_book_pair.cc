@@ -112,14 +112,10 @@ int command_book_pair(const Arguments& arguments) {
     files.write("right-occluded", 0, pair.right_occluded);
   });
 
-  report.set_results({{"disparities", fmt::format("{}:{}", pair.search.min, pair.search.max)}});
-  report.write(job.common.report);
-  if (!job.common.quiet) {
-    tell("book pair: {}x{} pixels, search with --disparities={}:{} -> {}\n", pair.left.width(),
-         pair.left.height(), pair.search.min, pair.search.max, job.output);
-    report.print_summary();
-  }
-  return kExitDone;
+  return work.finish(
+      {{"disparities", fmt::format("{}:{}", pair.search.min, pair.search.max)}},
+      fmt::format("{}x{} pixels, search with --disparities={}:{} -> {}", pair.left.width(),
+                  pair.left.height(), pair.search.min, pair.search.max, job.output));
 }
 
 }  // namespace vantage::apps

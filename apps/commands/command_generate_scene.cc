@@ -241,15 +241,11 @@ int command_generate_scene(const Arguments& arguments) {
   }
   const int min_disparity = static_cast<int>(std::floor(job.scene.far_disparity_or_default()));
   const int max_disparity = static_cast<int>(std::ceil(job.scene.near_disparity_or_default()));
-  report.set_results({{"frames", frames_done},
-                      {"disparities", fmt::format("{}:{}", min_disparity, max_disparity)}});
-  report.write(job.common.report);
-  if (!job.common.quiet) {
-    tell("generate scene: {} frame{} of {}x{} pixels, search with --disparities={}:{} -> {}\n",
-         frames_done, frames_done == 1 ? "" : "s", job.scene.width_px, job.scene.height_px,
-         min_disparity, max_disparity, job.output);
-    report.print_summary();
-  }
+  work.finish({{"frames", frames_done},
+               {"disparities", fmt::format("{}:{}", min_disparity, max_disparity)}},
+              fmt::format("{} frame{} of {}x{} pixels, search with --disparities={}:{} -> {}",
+                          frames_done, frames_done == 1 ? "" : "s", job.scene.width_px,
+                          job.scene.height_px, min_disparity, max_disparity, job.output));
   return frames_done < frames ? kExitInterrupted : kExitDone;
 }
 

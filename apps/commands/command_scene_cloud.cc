@@ -102,13 +102,8 @@ int command_scene_cloud(const Arguments& arguments) {
   const PointCloud cloud = maker.finish();
   report.timed_file_access("write",
                            [&] { write_binary_file(job.output, encode_ply(cloud, kPoseFrame)); });
-  report.set_results({{"images", images}, {"points", cloud.size()}});
-  report.write(job.common.report);
-  if (!job.common.quiet) {
-    tell("scene cloud: {} images, {} points -> {}\n", images, cloud.size(), job.output);
-    report.print_summary();
-  }
-  return kExitDone;
+  return work.finish({{"images", images}, {"points", cloud.size()}},
+                     fmt::format("{} images, {} points -> {}", images, cloud.size(), job.output));
 }
 
 }  // namespace vantage::apps

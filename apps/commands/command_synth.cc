@@ -160,14 +160,10 @@ int command_synth(const Arguments& arguments) {
     warn_of_empty_views(settings.command(), input, poses, empty_views);
   }
   report.set_memory(memory_use(input, execution));
-  report.set_results({{"views", rendered.views}});
-  report.write(job.common.report);
-  if (!job.common.quiet) {
-    tell("synth: {}x{} pixels, {} view{} -> {}\n", rendered.width_px, rendered.height_px, views,
-         views == 1 ? "" : "s", job.output.output);
-    report.print_summary();
-  }
-  return kExitDone;
+  return work.finish(
+      {{"views", rendered.views}},
+      fmt::format("{}x{} pixels, {} view{} -> {}", rendered.width_px, rendered.height_px, views,
+                  views == 1 ? "" : "s", job.output.output));
 }
 
 }  // namespace vantage::apps

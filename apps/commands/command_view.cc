@@ -108,14 +108,10 @@ int command_view(const Arguments& arguments) {
       "page", [&] { return make_view_page(pair, names, job.page, execution); });
   report.timed_file_access("write", [&] { write_text_file(job.output, page); });
 
-  report.set_results({{"page_bytes", page.size()}});
-  report.write(job.common.report);
-  if (!job.common.quiet) {
-    tell("view: {}x{} pixels, {:.1f} MB -> {}\n", pair.left.width(), pair.left.height(),
-         static_cast<double>(page.size()) / 1e6, job.output);
-    report.print_summary();
-  }
-  return kExitDone;
+  return work.finish(
+      {{"page_bytes", page.size()}},
+      fmt::format("{}x{} pixels, {:.1f} MB -> {}", pair.left.width(), pair.left.height(),
+                  static_cast<double>(page.size()) / 1e6, job.output));
 }
 
 }  // namespace vantage::apps

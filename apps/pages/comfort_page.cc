@@ -128,14 +128,14 @@ std::string charts(const ComfortPage& page) {
                     .markers = markers,
                     .series = std::move(series)};
   };
-  const std::string svg = to_svg(draw_line_plots(
-      "",
-      {plot("Disparity", "% of the width", {near.series(), median.series(), far.series()}),
-       plot("Cut at the borders", "% of the rows", {left.series(), right.series()}),
-       plot("Vertical error", "% of the height", {vertical.series()}),
-       plot("Colour difference", "levels of 255", {colour.series()})},
-      2));
-  return svg.substr(svg.find("<svg"));
+  return draw_line_plots(
+             "",
+             {plot("Disparity", "% of the width", {near.series(), median.series(), far.series()}),
+              plot("Cut at the borders", "% of the rows", {left.series(), right.series()}),
+              plot("Vertical error", "% of the height", {vertical.series()}),
+              plot("Colour difference", "levels of 255", {colour.series()})},
+             2)
+      .svg();
 }
 
 std::string limit_table() {

@@ -20,12 +20,6 @@ namespace {
 /// Longer tables are files to save only.
 constexpr std::size_t kMaxShownRows = 400;
 
-/// The SVG element without the XML declaration, which HTML does not know.
-std::string inline_svg(const Drawing& drawing) {
-  const std::string document = to_svg(drawing);
-  return document.substr(document.find("<svg"));
-}
-
 std::string html_table(const FigureTable& table) {
   std::string html = "<table><thead><tr>";
   for (const std::string& column : table.columns) {
@@ -75,7 +69,7 @@ std::string figure_section(const MadeFigure& made) {
     html += html_table(table_of(made.content.comparisons));
   }
   for (const FigurePicture& picture : made.content.pictures) {
-    html += inline_svg(picture.drawing);
+    html += picture.drawing.svg();
   }
   for (const FigureTable& table : made.content.tables) {
     html += table_section(figure, table);

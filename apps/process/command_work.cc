@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "apps/commands/commands.h"
+#include "apps/process/tell.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {
@@ -16,10 +18,22 @@ const ExecutionOptions& ready(const CommonOptions& common, RunReport& report) {
 
 }  // namespace
 
-CommandWork::CommandWork(const Settings& settings, const CommonOptions& common,
+CommandWork::CommandWork(const Settings& settings, const CommonOptions& common_options,
                          SettingValue reported)
-    : report(settings.command(), std::move(reported)), execution(ready(common, report)) {
+    : common(common_options),
+      report(settings.command(), std::move(reported)),
+      execution(ready(common_options, report)) {
   report.set_execution(execution);
+}
+
+int CommandWork::finish(SettingValue results, const std::string& message) {
+  report.set_results(std::move(results));
+  report.write(common.report);
+  if (!common.quiet) {
+    tell("{}: {}\n", report.command(), message);
+    report.print_summary();
+  }
+  return kExitDone;
 }
 
 }  // namespace vantage::apps

@@ -53,8 +53,6 @@ std::vector<std::string> extensions_of(OutputKind kind) {
       return {".ply"};
     case OutputKind::kPage:
       return {".html", ".htm"};
-    case OutputKind::kPlot:
-      return {".svg", ".png", ".jpg", ".jpeg", ".tiff", ".tif", ".bmp", ".ppm", ".webp"};
     case OutputKind::kText:
       break;
   }

@@ -25,7 +25,6 @@ enum class OutputKind {
   kDepth,
   kPoints,  ///< .ply
   kPage,    ///< .html
-  kPlot,    ///< a chart: .svg or a picture
   kText
 };
 

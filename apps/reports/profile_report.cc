@@ -208,39 +208,4 @@ std::string describe(const Profile& profile) {
          counters(profile.hardware, max.threads);
 }
 
-std::string describe(const ProfileComparison& comparison, const std::string& first_name,
-                     const std::string& second_name) {
-  std::string text = fmt::format("A  {}\nB  {}\n", first_name, second_name);
-  for (const std::string& warning : comparison.warnings) {
-    text += fmt::format("warning: {}\n", warning);
-  }
-  int threads = 0;
-  std::optional<TextTable> table;
-  const auto finish = [&] {
-    if (table) {
-      text += "\n" + table->text();
-    }
-  };
-  for (const ComparedFigure& figure : comparison.figures) {
-    if (figure.threads != threads) {
-      finish();
-      threads = figure.threads;
-      table.emplace(threads_text(threads),
-                    std::vector<std::string>{"", "A", "B", "B/A", "B against A"});
-    }
-    const char* unit = figure.unit == FigureUnit::kSeconds ? "s" : "B";
-    table->add({figure.name, sample_text(figure.first, unit), sample_text(figure.second, unit),
-                figure.ratio() > 0 ? fmt::format("{:.3f}", figure.ratio()) : kUnknown,
-                verdict_text(figure)});
-  }
-  finish();
-  if (comparison.figures.empty()) {
-    text += "\nThere is no number of threads that both were measured on.\n";
-  }
-  return text + fmt::format(
-                    "\nMedians and ranges (least to most). A verdict takes ranges that do not "
-                    "overlap, of {} runs or more.\n",
-                    kRunsForVerdict);
-}
-
 }  // namespace vantage::apps

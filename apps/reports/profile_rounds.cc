@@ -109,7 +109,7 @@ bool run_once(ProfiledCommand& command, const RunFiles& files, const std::string
   write_text_file(files.job(), command.job_file(contestant.threads, files.report(), trace));
   const scheduler::HardwareCounters counters;
   const ProgramResult result =
-      run_program({contestant.program, command.name(), "--config", files.job()}, &stop);
+      run_program({path_of_this_program(), command.name(), "--config", files.job()}, &stop);
   const scheduler::EventCounts counts = counters.read();
   command.clear_results();
   if (stop.load()) {
@@ -123,8 +123,8 @@ bool run_once(ProfiledCommand& command, const RunFiles& files, const std::string
     contestant.isa = report.at("isa");
     run = measurement_in(report);
   } catch (const SettingValue::exception& error) {
-    throw Error(fmt::format("{}: its report lacks what a profile is made of ({})",
-                            contestant.program, error.what()));
+    throw Error(
+        fmt::format("{}: lacks what a profile is made of ({})", files.report(), error.what()));
   }
   contestant.counters_absence = counts.absence;
   if (counts.user_mode_only) {

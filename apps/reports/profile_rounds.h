@@ -12,16 +12,15 @@
 
 namespace vantage::apps {
 
-/// A program on a number of threads, and what its counted runs told.
+/// A number of threads, and what the counted runs on it told.
 struct Contestant {
-  std::string program;
   int threads = 1;
   bool keeps_timeline = false;  ///< of the run with the median wall time
-  std::vector<RunMeasurement> runs;
-  std::string version;
-  std::string isa;
-  std::string counters_absence;  ///< why counts of the processor are missing
-  std::vector<TimelineRow> timeline;
+  std::vector<RunMeasurement> runs = {};
+  std::string version = {};
+  std::string isa = {};
+  std::string counters_absence = {};  ///< why counts of the processor are missing
+  std::vector<TimelineRow> timeline = {};
   double timeline_s = 0;
 };
 
@@ -41,10 +40,10 @@ class RunFailure : public Error {
   int exit_code_;
 };
 
-/// Runs `command` by every contestant in turn, a warm-up round and then the rounds that count, so
-/// that a machine that slows down does so for all. Rounds that the budget has no time for are left
-/// out, but for the first. Returns false when `stop` was raised. Throws RunFailure with the line
-/// that the command printed, if one of its runs fails.
+/// Runs `command` on every number of threads in turn, a warm-up round and then the rounds that
+/// count, so that a machine that slows down does so for all. Rounds that the budget has no time for
+/// are left out, but for the first. Returns false when `stop` was raised. Throws RunFailure with
+/// the line that the command printed, if one of its runs fails.
 bool run_rounds(ProfiledCommand& command, const RoundOptions& options,
                 std::vector<Contestant>& contestants, const std::atomic<bool>& stop);
 

@@ -38,20 +38,20 @@ std::string time_text(double seconds) {
   return seconds < 10 ? fmt::format("{:.1f} ms", seconds * 1e3) : fmt::format("{:.1f} s", seconds);
 }
 
-SettingValue describe(const IntensityChange& change) {
+SettingValue values_of(const IntensityChange& change) {
   return {{"gain", change.gain}, {"offset", change.offset}};
 }
 
 /// What a pair told about its grey levels; null: nothing, what the settings say is in force.
-SettingValue describe(const PairExposure& levels) {
+SettingValue values_of(const PairExposure& levels) {
   SettingValue result = {{"matches", levels.matches},
                          {"luma", nullptr},
                          {"channels", nullptr},
                          {"sigma_measurement", nullptr}};
   if (levels.has_intensity_change) {
-    result["luma"] = describe(levels.of_right.luma);
+    result["luma"] = values_of(levels.of_right.luma);
     for (const IntensityChange& channel : levels.of_right.channels) {
-      result["channels"].push_back(describe(channel));
+      result["channels"].push_back(values_of(channel));
     }
   }
   if (levels.sigma_measurement) {
@@ -96,7 +96,7 @@ void RunReport::add_match(const MatchReport& match) {
   finest_pixels_ += match.finest_pixels;
   set_plan(match.plan);
   if (match.exposure) {
-    add_result("grey_levels", describe(*match.exposure));
+    add_result("grey_levels", values_of(*match.exposure));
   }
 }
 

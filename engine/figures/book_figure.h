@@ -1,7 +1,10 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,9 +33,15 @@ struct FigureSettings {
 
 /// Numbers of a figure: a CSV file, and a table of the report.
 struct FigureTable {
+  /// A row of texts and numbers; numbers with a precision are texts.
+  template <typename... Cells>
+  void add(const Cells&... cells) {
+    rows.push_back({fmt::format("{}", cells)...});
+  }
+
   std::string name;  ///< in file names; empty: the figure's main table
   std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::vector<std::string>> rows = {};
 };
 
 struct FigurePicture {
@@ -88,7 +97,7 @@ struct BookFigure {
   /// Options of the only parameters of `method` that the figure reads; empty: all that it reads.
   std::vector<std::string_view> parameters = {};
   BookImages images = BookImages::kNone;  ///< which the figure is about
-  FigureContent (*make)(const FigureRun& run) = nullptr;
+  std::function<FigureContent(const FigureRun& run)> make = {};
 };
 
 /// The settings in force: those of `chosen` that the figure reads, else its defaults.

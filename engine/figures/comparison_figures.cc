@@ -139,9 +139,6 @@ FigureContent make_noise_figure(const FigureRun& run, const ErrorMeasure& measur
   return content;
 }
 
-FigureContent make_rms_figure(const FigureRun& run) { return make_noise_figure(run, kRms); }
-FigureContent make_bad_figure(const FigureRun& run) { return make_noise_figure(run, kBad); }
-
 LinePlot iteration_plot(const FigureSettings& settings, const std::string& pair, double noise,
                         const ErrorMeasure& measure, const std::vector<ComparisonRun>& runs) {
   LinePlot plot{.title = fmt::format("{}, noise {}", pair, noise_label(noise)),
@@ -203,16 +200,10 @@ std::string last_change(const std::string& method, const std::vector<ComparisonR
   for (std::size_t i = 1; i < runs.size(); ++i) {
     const bool is_last = i + 1 == runs.size() || !differ_in_iterations(runs[i], runs[i + 1]);
     if (runs[i].method == method && is_last && differ_in_iterations(runs[i - 1], runs[i])) {
-      const DisparityMap& before = runs[i - 1].map;
-      const DisparityMap& after = runs[i].map;
-      int changed = 0;
-      for (int y = 0; y < after.height(); ++y) {
-        for (int x = 0; x < after.width(); ++x) {
-          changed += before.at(x, y) != after.at(x, y) ? 1 : 0;
-        }
-      }
       text += fmt::format("{}{:.1f} %", text.empty() ? "" : ", ",
-                          100.0 * changed / (after.width() * after.height()));
+                          percent_where(runs[i].map, [&](int x, int y, float value) {
+                            return value != runs[i - 1].map.at(x, y);
+                          }));
     }
   }
   return text;
@@ -288,13 +279,13 @@ std::vector<BookFigure> comparison_figures() {
                "0.5), local stopping (winner margin) and the probabilistic model, 10 iterations, "
                "against the standard deviation of the noise. Occluded points are not included.",
        .defaults = kNoiseDefaults,
-       .make = make_rms_figure},
+       .make = [](const FigureRun& run) { return make_noise_figure(run, kRms); }},
       {.key = "6.17",
        .section = "6.6",
        .title = "Bad points of four methods against noise",
        .book = "As Fig. 6.16 with the percentage of points whose error exceeds 1/2.",
        .defaults = kNoiseDefaults,
-       .make = make_bad_figure}};
+       .make = [](const FigureRun& run) { return make_noise_figure(run, kBad); }}};
 }
 
 }  // namespace vantage

@@ -105,8 +105,7 @@ FigureContent make_sections(const FigureRun& run) {
   FigureContent content;
   FigureTable table{"",
                     {"pair", "method", "iterations", "noise_sigma", "mean_at_true_disparity",
-                     "mean_at_other_candidates"},
-                    {}};
+                     "mean_at_other_candidates"}};
   for (const std::string& name : run.settings.pairs) {
     std::vector<SheetPicture> layers;
     std::vector<SheetPicture> sections;
@@ -129,9 +128,8 @@ FigureContent make_sections(const FigureRun& run) {
           }
           add_sections(space, title, layers, sections);
           const auto [at_truth, elsewhere] = mean_values(space, pair);
-          table.rows.push_back({name, method, iterations_field(method, iterations),
-                                fmt::format("{}", noise), fmt::format("{:.6g}", at_truth),
-                                fmt::format("{:.6g}", elsewhere)});
+          table.add(name, method, iterations_field(method, iterations), noise,
+                    fmt::format("{:.6g}", at_truth), fmt::format("{:.6g}", elsewhere));
         }
       }
     }
@@ -172,7 +170,7 @@ FigureContent make_support_of_points(const FigureRun& run) {
   const int back = options.background_disparity_px;
 
   FigureContent content;
-  FigureTable table{"", {"point", "x_px", "y_px", "disparity_px", "mean_squared_difference"}, {}};
+  FigureTable table{"", {"point", "x_px", "y_px", "disparity_px", "mean_squared_difference"}};
   LinePlot plot{.title = fmt::format("{}, windows of {} pixels", name, *parameters.window_px),
                 .x_axis = {.title = "disparity, pixels"},
                 .y_axis = {.title = "mean squared difference in the window"},
@@ -184,8 +182,7 @@ FigureContent make_support_of_points(const FigureRun& run) {
       const double value = space.at(point.x, point.y, d);
       series.x.push_back(d);
       series.y.push_back(value);
-      table.rows.push_back({point.name, fmt::format("{}", point.x), fmt::format("{}", point.y),
-                            fmt::format("{}", d), fmt::format("{:.6g}", value)});
+      table.add(point.name, point.x, point.y, d, fmt::format("{:.6g}", value));
     }
     plot.series.push_back(std::move(series));
     const int reach = *parameters.window_px / 2;
@@ -242,8 +239,7 @@ FigureContent make_four_steps(const FigureRun& run) {
   FigureContent content;
   FigureTable table{"",
                     {"disparity_px", "p_before", "p_smoothed", "E_smoothed", "E_diffused",
-                     "p_after", "p_after_by_the_engine"},
-                    {}};
+                     "p_after", "p_after_by_the_engine"}};
   PlotSeries before_series{"p before", {}, {}};
   PlotSeries smoothed_series{"pS, smoothed along d", {}, {}};
   PlotSeries after_series{"p after", {}, {}};
@@ -263,11 +259,10 @@ FigureContent make_four_steps(const FigureRun& run) {
     add(after_series, steps.probability[i]);
     add(smoothed_energy_series, steps.smoothed_energy[i]);
     add(energy_series, steps.energy[i]);
-    table.rows.push_back(
-        {fmt::format("{}", d), fmt::format("{:.6g}", before.at(x, y, d)),
-         fmt::format("{:.6g}", steps.smoothed[i]), fmt::format("{:.6g}", steps.smoothed_energy[i]),
-         fmt::format("{:.6g}", steps.energy[i]), fmt::format("{:.6g}", steps.probability[i]),
-         fmt::format("{:.6g}", by_engine)});
+    table.add(
+        d, fmt::format("{:.6g}", before.at(x, y, d)), fmt::format("{:.6g}", steps.smoothed[i]),
+        fmt::format("{:.6g}", steps.smoothed_energy[i]), fmt::format("{:.6g}", steps.energy[i]),
+        fmt::format("{:.6g}", steps.probability[i]), fmt::format("{:.6g}", by_engine));
   }
   const auto plot_of = [](const char* title, std::vector<PlotSeries> series) {
     return LinePlot{.title = title,

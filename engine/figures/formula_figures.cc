@@ -25,7 +25,7 @@ FigureContent make_evidence_levels(const FigureRun& run) {
   constexpr int kReach = 40;  // steps: two unit lengths
   const double alpha = run.settings.parameters.alpha.value_or(1);
   FigureContent content;
-  FigureTable table{"", {"x", "y", "evidence"}, {}};
+  FigureTable table{"", {"x", "y", "evidence"}};
   HeatMap map{.title = fmt::format("e for (x, y) and (1, 0), alpha = {}", alpha),
               .x_title = "x, twentieths of the unit vector",
               .y_title = "-y, twentieths",
@@ -38,8 +38,7 @@ FigureContent make_evidence_levels(const FigureRun& run) {
       const double y = -row / kStepsPerUnit;
       const double evidence = evidence_with_unit(x, y, alpha);
       map.values.at(column + kReach, row + kReach) = static_cast<float>(evidence);
-      table.rows.push_back(
-          {fmt::format("{}", x), fmt::format("{}", y), fmt::format("{:.6f}", evidence)});
+      table.add(x, y, fmt::format("{:.6f}", evidence));
     }
   }
   std::vector<HeatMap> maps;
@@ -64,7 +63,7 @@ FigureContent make_prior(const FigureRun& run) {
   parameters.sigma_prior = run.settings.parameters.sigma_prior.value_or(1);
   const double epsilon = parameters.epsilon_prior;
   FigureContent content;
-  FigureTable table{"", {"x"}, {}};
+  FigureTable table{"", {"x"}};
   LinePlot plot{.title = fmt::format("epsilon = {}, sigma = {}", epsilon, parameters.sigma_prior),
                 .x_axis = {.title = "difference of neighbouring disparities, pixels"},
                 .y_axis = {.title = "penalty"},
@@ -77,7 +76,7 @@ FigureContent make_prior(const FigureRun& run) {
   }
   for (int step = -kReach; step <= kReach; ++step) {
     const double x = step / kStepsPerUnit;
-    table.rows.push_back({fmt::format("{}", x)});
+    table.add(x);
     for (std::size_t k = 0; k < prior_names().size(); ++k) {
       parameters.prior = prior_names()[k].second;
       const double value = prior_penalty(parameters, x);

@@ -11,6 +11,7 @@
 
 #include "engine/figures/figure_families.h"
 #include "engine/figures/figure_images.h"
+#include "engine/figures/pair_runs.h"
 #include "engine/figures/scene_maps.h"
 #include "engine/matching/stereo_matcher.h"
 
@@ -19,30 +20,11 @@ namespace {
 
 constexpr double kWidePicture = 320;
 
-FigureContent show_pair(BookImages which, const char* first, const char* second,
-                        const FigureRun& run) {
-  const auto images = images_of(which, run);
-  FigureContent content{.images = images->description};
-  std::vector<SheetPicture> pictures;
-  pictures.push_back(photograph_picture(*images, first, images->left));
-  pictures.push_back(photograph_picture(*images, second, images->right));
-  content.pictures.push_back({"", draw_picture_sheet("Pair", pictures, 2, kWidePicture)});
-  return content;
-}
-
-FigureContent make_tree_images(const FigureRun& run) {
-  return show_pair(BookImages::kTree, "left", "right", run);
-}
-
-FigureContent make_cat_images(const FigureRun& run) {
-  return show_pair(BookImages::kCat, "earlier frame", "later frame", run);
-}
-
 /// Both components of the displacements from the later frame to the earlier one.
 FigureContent make_cat_displacements(const FigureRun& run) {
   const auto images = images_of(BookImages::kCat, run);
   FigureContent content{.images = images->description};
-  FigureTable table{"", {"method", "dx_px", "dy_px", "pixels"}, {}};
+  FigureTable table{"", {"method", "dx_px", "dy_px", "pixels"}};
   std::vector<SheetPicture> pictures;
   for (const std::string& method : run.settings.methods) {
     MatchOptions options = scene_options(run.settings, method, run.settings.iterations.front(),
@@ -67,8 +49,7 @@ FigureContent make_cat_displacements(const FigureRun& run) {
     std::pair<float, float> most;
     int most_pixels = 0;
     for (const auto& [displacement, pixels] : counts) {
-      table.rows.push_back({method, fmt::format("{}", displacement.first),
-                            fmt::format("{}", displacement.second), fmt::format("{}", pixels)});
+      table.add(method, displacement.first, displacement.second, pixels);
       if (pixels > most_pixels) {
         most_pixels = pixels;
         most = displacement;
@@ -84,25 +65,17 @@ FigureContent make_cat_displacements(const FigureRun& run) {
 }
 
 FigureTable score_table() {
-  return {"",
-          {"map", "matched_percent", "bad_0_5_percent", "bad_1_percent", "bad_2_percent", "rms_px"},
-          {}};
-}
-
-/// Share of the pixels with a disparity, percent.
-double known_percent(const DisparityMap& map) {
-  int known = 0;
-  for (int y = 0; y < map.height(); ++y) {
-    known += static_cast<int>(
-        std::count_if(map.row(y), map.row(y) + map.width(), [](float d) { return d == d; }));
-  }
-  return 100.0 * known / (map.width() * map.height());
+  return {
+      "",
+      {"map", "matched_percent", "bad_0_5_percent", "bad_1_percent", "bad_2_percent", "rms_px"}};
 }
 
 void add_map(const FigureImages& images, const std::string& name, const DisparityMap& map,
              std::vector<SheetPicture>& pictures, FigureTable& table) {
   pictures.push_back(map_picture(images, name, map.view()));
-  std::vector<std::string> row = {name, fmt::format("{:.2f}", known_percent(map))};
+  const double known =
+      percent_where(map, [](int /*x*/, int /*y*/, float d) { return !std::isnan(d); });
+  std::vector<std::string> row = {name, fmt::format("{:.2f}", known)};
   std::ranges::move(score_fields(images, map.view()), std::back_inserter(row));
   table.rows.push_back(std::move(row));
 }
@@ -210,7 +183,10 @@ std::vector<BookFigure> gradient_figures() {
            .book = "Images 24 and 18 of a sequence: an outdoor scene with much texture.",
            .defaults = settings_for(BookImages::kTree),
            .images = BookImages::kTree,
-           .make = make_tree_images},
+           .make =
+               [](const FigureRun& run) {
+                 return show_pair(BookImages::kTree, "Pair", {"left", "right"}, kWidePicture, run);
+               }},
           {.key = "5.8",
            .section = "5.5.2",
            .title = "Disparities of tree by gradient evidence",
@@ -233,7 +209,11 @@ std::vector<BookFigure> gradient_figures() {
            .book = "Frames 1 and 5 of a sequence: the camera follows a cat.",
            .defaults = settings_for(BookImages::kCat),
            .images = BookImages::kCat,
-           .make = make_cat_images},
+           .make =
+               [](const FigureRun& run) {
+                 return show_pair(BookImages::kCat, "Pair", {"earlier frame", "later frame"},
+                                  kWidePicture, run);
+               }},
           {.key = "5.11",
            .section = "5.5.3",
            .title = "Horizontal displacements of cat",

@@ -38,20 +38,17 @@ struct MembraneSupport {
 /// One quadrant; the others are equal.
 FigureTable table_of(const std::vector<MembraneSupport>& supports,
                      const std::vector<int>& iterations) {
-  FigureTable table{"", {"beta", "dx", "dy", "inverse_fourier"}, {}};
+  FigureTable table{"", {"beta", "dx", "dy", "inverse_fourier"}};
   for (const int count : iterations) {
     table.columns.push_back(fmt::format("iterations_{}", count));
   }
   for (const MembraneSupport& support : supports) {
     for (int dy = 0; dy <= kShownRadius; ++dy) {
       for (int dx = 0; dx <= kShownRadius; ++dx) {
-        std::vector<std::string> row = {fmt::format("{}", support.beta), fmt::format("{}", dx),
-                                        fmt::format("{}", dy),
-                                        fmt::format("{:.12g}", support.limit.at(dx, dy))};
+        table.add(support.beta, dx, dy, fmt::format("{:.12g}", support.limit.at(dx, dy)));
         for (const SupportFunction& response : support.responses) {
-          row.push_back(fmt::format("{:.12g}", response.at(dx, dy)));
+          table.rows.back().push_back(fmt::format("{:.12g}", response.at(dx, dy)));
         }
-        table.rows.push_back(std::move(row));
       }
     }
   }

@@ -47,27 +47,22 @@ std::vector<TitledRun> titled(std::vector<ComparisonRun> runs, const std::string
 /// Share of the pixels whose disparity is within 1/2 of that of background or square, percent.
 double share_at_levels(const DisparityMap& map, const std::string& pair) {
   const BookPairOptions options = book_pair_options(pair);
-  int at_levels = 0;
-  for (int y = 0; y < map.height(); ++y) {
-    for (int x = 0; x < map.width(); ++x) {
-      for (const int level :
-           {options.background_disparity_px, options.front_disparity_or_default()}) {
-        at_levels += std::abs(map.at(x, y) - static_cast<float>(level)) <= 0.5F ? 1 : 0;
-      }
-    }
+  double percent = 0;
+  for (const int level : {options.background_disparity_px, options.front_disparity_or_default()}) {
+    percent += percent_where(map, [level](int /*x*/, int /*y*/, float value) {
+      return std::abs(value - static_cast<float>(level)) <= 0.5F;
+    });
   }
-  return 100.0 * at_levels / (map.width() * map.height());
+  return percent;
 }
 
 FigureContent show_maps(const std::string& title, const std::vector<TitledRun>& runs) {
   FigureContent content;
   std::vector<SurfacePlot> surfaces;
   std::vector<SheetPicture> pictures;
-  std::vector<ComparisonRun> plain;
   FigureTable table{"",
                     {"map", "mean_absolute_px", "rms_px", "bad_percent",
-                     "within_half_pixel_of_a_true_level_percent"},
-                    {}};
+                     "within_half_pixel_of_a_true_level_percent"}};
   for (const auto& [name, run] : runs) {
     const BookPair pair = make_book_pair(book_pair_options(run.pair));
     surfaces.push_back({.title = name,
@@ -78,10 +73,10 @@ FigureContent show_maps(const std::string& title, const std::vector<TitledRun>& 
                         .max_meshes = kMapMeshes});
     pictures.push_back({name, grey_picture(run.map.view(), static_cast<float>(pair.search.min),
                                            static_cast<float>(pair.search.max))});
-    table.rows.push_back({name, fmt::format("{:.4f}", run.scores.average_px),
-                          fmt::format("{:.4f}", run.scores.rms_px),
-                          fmt::format("{:.2f}", run.scores.bad_0_5_percent),
-                          fmt::format("{:.2f}", share_at_levels(run.map, run.pair))});
+    table.add(name, fmt::format("{:.4f}", run.scores.average_px),
+              fmt::format("{:.4f}", run.scores.rms_px),
+              fmt::format("{:.2f}", run.scores.bad_0_5_percent),
+              fmt::format("{:.2f}", share_at_levels(run.map, run.pair)));
   }
   constexpr int kColumns = 4;
   constexpr int kSurfaceColumns = 2;
@@ -163,17 +158,6 @@ FigureContent make_windows(const FigureRun& run) {
   return content;
 }
 
-/// Share of pixels that differ by more than half a pixel, percent.
-double change_between(const DisparityMap& a, const DisparityMap& b) {
-  int changed = 0;
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      changed += std::abs(a.at(x, y) - b.at(x, y)) > 0.5F ? 1 : 0;
-    }
-  }
-  return 100.0 * changed / (a.width() * a.height());
-}
-
 FigureContent make_membrane_maps(const FigureRun& run) {
   const auto runs = titled(runs_of(run), "");
   if (runs.empty()) {
@@ -191,7 +175,9 @@ FigureContent make_membrane_maps(const FigureRun& run) {
                      runs[i - 1].run.iterations, runs[i].run.iterations),
          "almost identical",
          fmt::format("{:.2f} % of the pixels differ by more than 1/2",
-                     change_between(runs[i - 1].run.map, runs[i].run.map))});
+                     percent_where(runs[i].run.map, [&](int x, int y, float value) {
+                       return std::abs(value - runs[i - 1].run.map.at(x, y)) > 0.5F;
+                     }))});
   }
   return content;
 }

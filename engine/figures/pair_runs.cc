@@ -58,21 +58,29 @@ bool differ_in_iterations(const ComparisonRun& a, const ComparisonRun& b) {
 FigureTable table_of(const std::vector<ComparisonRun>& runs) {
   FigureTable table{"",
                     {"pair", "method", "iterations", "noise_sigma", "mean_absolute_px", "rms_px",
-                     "bad_percent", "evaluated_pixels"},
-                    {}};
+                     "bad_percent", "evaluated_pixels"}};
   for (const ComparisonRun& run : runs) {
-    table.rows.push_back({run.pair, run.method, iterations_field(run.method, run.iterations),
-                          fmt::format("{}", run.noise_sigma),
-                          fmt::format("{:.6f}", run.scores.average_px),
-                          fmt::format("{:.6f}", run.scores.rms_px),
-                          fmt::format("{:.4f}", run.scores.bad_0_5_percent),
-                          fmt::format("{}", run.scores.evaluated_pixels)});
+    table.add(run.pair, run.method, iterations_field(run.method, run.iterations), run.noise_sigma,
+              fmt::format("{:.6f}", run.scores.average_px),
+              fmt::format("{:.6f}", run.scores.rms_px),
+              fmt::format("{:.4f}", run.scores.bad_0_5_percent), run.scores.evaluated_pixels);
   }
   return table;
 }
 
 std::string noise_label(double sigma) {
   return sigma == 0.25 ? "1/4" : sigma == 0.5 ? "1/2" : fmt::format("{}", sigma);
+}
+
+double percent_where(const DisparityMap& map,
+                     const std::function<bool(int x, int y, float disparity)>& holds) {
+  int pixels = 0;
+  for (int y = 0; y < map.height(); ++y) {
+    for (int x = 0; x < map.width(); ++x) {
+      pixels += holds(x, y, map.at(x, y)) ? 1 : 0;
+    }
+  }
+  return 100.0 * pixels / (map.width() * map.height());
 }
 
 BookPair pair_of(const FigureSettings& settings, const std::string& pair, double noise_sigma) {

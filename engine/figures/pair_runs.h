@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,10 @@ FigureTable table_of(const std::vector<ComparisonRun>& runs);
 
 /// "1/4" for a quarter: names for readers.
 std::string noise_label(double sigma);
+
+/// Share of the pixels of a map for which `holds`, percent.
+double percent_where(const DisparityMap& map,
+                     const std::function<bool(int x, int y, float disparity)>& holds);
 
 /// The pair as it is in the comparison, in both images.
 BookPair pair_of(const FigureSettings& settings, const std::string& pair, double noise_sigma);

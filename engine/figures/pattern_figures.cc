@@ -42,14 +42,13 @@ void add_levels(const std::string& name, const BookPair& pair, FigureTable& tabl
     }
   }
   for (const auto& [disparity, counts] : levels) {
-    table.rows.push_back({name, fmt::format("{}", disparity), fmt::format("{}", counts.first),
-                          fmt::format("{}", counts.second)});
+    table.add(name, disparity, counts.first, counts.second);
   }
 }
 
 FigureContent make_pattern(const FigureRun& run) {
   FigureContent content;
-  FigureTable table{"", {"pair", "disparity_px", "pixels", "occluded_pixels"}, {}};
+  FigureTable table{"", {"pair", "disparity_px", "pixels", "occluded_pixels"}};
   std::vector<SurfacePlot> surfaces;
   std::vector<SheetPicture> pictures;
   for (const std::string& name : run.settings.pairs) {
@@ -115,8 +114,7 @@ FigureContent make_pairs(const FigureRun& run) {
   FigureContent content;
   FigureTable table{"",
                     {"pair", "noise_sigma", "equal_at_true_disparity_percent",
-                     "equal_at_other_candidates_percent"},
-                    {}};
+                     "equal_at_other_candidates_percent"}};
   std::vector<SheetPicture> pictures;
   for (const std::string& name : run.settings.pairs) {
     for (const double chosen : run.settings.noise_sigmas) {
@@ -127,9 +125,8 @@ FigureContent make_pairs(const FigureRun& run) {
       pictures.push_back({title + ": left", eight_bit(pair.left)});
       pictures.push_back({title + ": right", eight_bit(pair.right)});
       const MatchingChance chance = chance_of(pair);
-      table.rows.push_back({name, fmt::format("{}", noise),
-                            fmt::format("{:.2f}", chance.right_percent),
-                            fmt::format("{:.2f}", chance.wrong_percent)});
+      table.add(name, noise, fmt::format("{:.2f}", chance.right_percent),
+                fmt::format("{:.2f}", chance.wrong_percent));
       if (name.starts_with("rds") && noise == 0) {
         content.comparisons.push_back({name + ": pixels not in correspondence that match", "50 %",
                                        fmt::format("{:.1f} %", chance.wrong_percent)});

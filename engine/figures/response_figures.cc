@@ -49,16 +49,6 @@ std::string text_of(const std::optional<Displacement>& displacement) {
   return displacement ? fmt::format("({}, {})", displacement->x_px, displacement->y_px) : "none";
 }
 
-FigureContent make_street_images(const FigureRun& run) {
-  const auto images = images_of(BookImages::kStreet, run);
-  FigureContent content{.images = images->description};
-  std::vector<SheetPicture> pictures;
-  pictures.push_back(photograph_picture(*images, "left", images->left));
-  pictures.push_back(photograph_picture(*images, "right", images->right));
-  content.pictures.push_back({"", draw_picture_sheet("Unrectified pair", pictures, 2, 360)});
-  return content;
-}
-
 /// Mean truth of a quadrant, the displacement to expect there.
 std::string mean_truth(const FigureImages& images, ImagePart part) {
   if (!images.left_truth) {
@@ -89,7 +79,7 @@ FigureContent make_evidence_images(const FigureRun& run) {
   const auto images = images_of(BookImages::kStreet, run);
   const CumulativeResponse response = response_of(*images, run);
   FigureContent content{.images = images->description};
-  FigureTable table{"", {"quadrant", "dx_px", "dy_px", "evidence_per_pixel"}, {}};
+  FigureTable table{"", {"quadrant", "dx_px", "dy_px", "evidence_per_pixel"}};
   std::vector<SheetPicture> pictures;
   for (const ImagePart part : {ImagePart::kTopLeft, ImagePart::kTopRight, ImagePart::kBottomLeft,
                                ImagePart::kBottomRight}) {
@@ -108,9 +98,8 @@ FigureContent make_evidence_images(const FigureRun& run) {
     pictures.push_back(
         {fmt::format("{}: {}", name, text_of(dominant)),
          grey_picture(evidence.view(), -kShownEvidence, kShownEvidence, {128, 128, 128})});
-    table.rows.push_back(
-        {name, fmt::format("{}", dominant->x_px), fmt::format("{}", dominant->y_px),
-         fmt::format("{:.6f}", response.at(part, *dominant) / response.pixels(part))});
+    table.add(name, dominant->x_px, dominant->y_px,
+              fmt::format("{:.6f}", response.at(part, *dominant) / response.pixels(part)));
   }
   content.pictures.push_back(
       {"", draw_picture_sheet(
@@ -201,9 +190,13 @@ ResponseSurfaces surfaces_of(const FigureImages& images, const FigureRun& run) {
                      [&](std::size_t index) { return -rms[index]; })};
 }
 
-FigureContent show_surface(const ResponseSurfaces& both, const ResponseSurface& surface,
-                           const std::string& title, const std::string& unit) {
-  FigureContent content;
+/// Figs. 5.5 and 5.6: one of both surfaces, compared with the other one.
+FigureContent make_surface(ResponseSurface ResponseSurfaces::*shown, const std::string& title,
+                           const std::string& unit, const FigureRun& run) {
+  const auto images = images_of(BookImages::kStreet, run);
+  const ResponseSurfaces both = surfaces_of(*images, run);
+  const ResponseSurface& surface = both.*shown;
+  FigureContent content{.images = images->description};
   std::vector<SurfacePlot> plots;
   plots.push_back({.title = title,
                    .x_title = "dx, pixels",
@@ -222,13 +215,12 @@ FigureContent show_surface(const ResponseSurfaces& both, const ResponseSurface& 
                   .values = surface.values.copy(),
                   .marked = {{surface.peak.x_px, surface.peak.y_px}}});
   content.pictures.push_back({"levels", draw_heat_maps(title, maps, 1)});
-  FigureTable table{"", {"dx_px", "dy_px", "evidence_per_pixel", "negated_rms_grey_levels"}, {}};
+  FigureTable table{"", {"dx_px", "dy_px", "evidence_per_pixel", "negated_rms_grey_levels"}};
   for (int y = 0; y < surface.values.height(); ++y) {
     for (int x = 0; x < surface.values.width(); ++x) {
-      table.rows.push_back({fmt::format("{}", both.range_x.min + x),
-                            fmt::format("{}", both.range_y.min + y),
-                            fmt::format("{:.6g}", both.evidence.values.at(x, y)),
-                            fmt::format("{:.6g}", both.negated_rms.values.at(x, y))});
+      table.add(both.range_x.min + x, both.range_y.min + y,
+                fmt::format("{:.6g}", both.evidence.values.at(x, y)),
+                fmt::format("{:.6g}", both.negated_rms.values.at(x, y)));
     }
   }
   content.tables.push_back(std::move(table));
@@ -237,25 +229,6 @@ FigureContent show_surface(const ResponseSurfaces& both, const ResponseSurface& 
        fmt::format("{} and {}", text_of(both.evidence.peak), text_of(both.negated_rms.peak))},
       {"evidence", "clearly more discriminatory", discrimination_of(both.evidence)},
       {"negated RMS", "clearly less discriminatory", discrimination_of(both.negated_rms)}};
-  return content;
-}
-
-FigureContent make_evidence_surface(const FigureRun& run) {
-  const auto images = images_of(BookImages::kStreet, run);
-  const ResponseSurfaces both = surfaces_of(*images, run);
-  FigureContent content =
-      show_surface(both, both.evidence, "Cumulative response", "evidence per pixel, grey levels");
-  content.images = images->description;
-  return content;
-}
-
-FigureContent make_rms_surface(const FigureRun& run) {
-  const auto images = images_of(BookImages::kStreet, run);
-  const ResponseSurfaces both = surfaces_of(*images, run);
-  FigureContent content =
-      show_surface(both, both.negated_rms, "Negated root-mean-square difference",
-                   "negated RMS difference, grey levels");
-  content.images = images->description;
   return content;
 }
 
@@ -271,7 +244,10 @@ std::vector<BookFigure> response_figures() {
                "brightness, not rectified.",
        .defaults = street,
        .images = BookImages::kStreet,
-       .make = make_street_images},
+       .make =
+           [](const FigureRun& run) {
+             return show_pair(BookImages::kStreet, "Unrectified pair", {"left", "right"}, 360, run);
+           }},
       {.key = "5.4",
        .section = "5.5.1",
        .title = "Evidence for the dominant displacements",
@@ -291,7 +267,11 @@ std::vector<BookFigure> response_figures() {
        .defaults = street,
        .method = "gradient",
        .images = BookImages::kStreet,
-       .make = make_evidence_surface},
+       .make =
+           [](const FigureRun& run) {
+             return make_surface(&ResponseSurfaces::evidence, "Cumulative response",
+                                 "evidence per pixel, grey levels", run);
+           }},
       {.key = "5.6",
        .section = "5.5.1",
        .title = "Negated root-mean-square difference over the image",
@@ -299,7 +279,10 @@ std::vector<BookFigure> response_figures() {
        .defaults = street,
        .method = "gradient",
        .images = BookImages::kStreet,
-       .make = make_rms_surface}};
+       .make = [](const FigureRun& run) {
+         return make_surface(&ResponseSurfaces::negated_rms, "Negated root-mean-square difference",
+                             "negated RMS difference, grey levels", run);
+       }}};
 }
 
 }  // namespace vantage

@@ -55,6 +55,18 @@ SheetPicture photograph_picture(const FigureImages& images, std::string title,
           images.is_transposed ? eight_bit(transposed(photograph)) : eight_bit(photograph)};
 }
 
+FigureContent show_pair(BookImages which, const std::string& title,
+                        const std::array<const char*, 2>& names, double width,
+                        const FigureRun& run) {
+  const auto images = images_of(which, run);
+  FigureContent content{.images = images->description};
+  std::vector<SheetPicture> pictures;
+  pictures.push_back(photograph_picture(*images, names[0], images->left));
+  pictures.push_back(photograph_picture(*images, names[1], images->right));
+  content.pictures.push_back({"", draw_picture_sheet(title, pictures, 2, width)});
+  return content;
+}
+
 SheetPicture map_picture(const FigureImages& images, std::string title,
                          ImageView<const float> disparity) {
   const auto min = static_cast<float>(images.disparities.min);
@@ -65,13 +77,6 @@ SheetPicture map_picture(const FigureImages& images, std::string title,
     return {std::move(title), grey_picture(upright.view(), min, max, kBlack)};
   }
   return {std::move(title), grey_picture(disparity, min, max, kBlack)};
-}
-
-std::string score_text(const FigureImages& images, ImageView<const float> left_disparity) {
-  const auto scores = scores_of(images, left_disparity);
-  return scores ? fmt::format("{:.1f} % bad (over 1 px), RMS {:.2f} px of the visible pixels",
-                              scores->bad_1_percent, scores->rms_px)
-                : "";
 }
 
 std::vector<std::string> score_fields(const FigureImages& images,

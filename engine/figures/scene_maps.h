@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,14 @@ DisparityMaps scene_maps(const FigureImages& images, const MatchOptions& options
 /// A photograph or map as the cameras saw it.
 SheetPicture photograph_picture(const FigureImages& images, std::string title,
                                 const Photograph& photograph);
+/// The figure that shows two photographs, each `width` drawing units wide.
+FigureContent show_pair(BookImages which, const std::string& title,
+                        const std::array<const char*, 2>& names, double width,
+                        const FigureRun& run);
 /// Lighter is nearer; unknown is black.
 SheetPicture map_picture(const FigureImages& images, std::string title,
                          ImageView<const float> disparity);
 
-/// "3.1 % bad (over 1 px), RMS 0.8 px of the visible pixels with truth"; empty without truth.
-std::string score_text(const FigureImages& images, ImageView<const float> left_disparity);
 /// The scores as fields of a table: bad ½, bad 1 and bad 2 in percent, RMS in px. Without truth the
 /// fields are empty.
 std::vector<std::string> score_fields(const FigureImages& images,

@@ -18,9 +18,7 @@ FigureContent make_several(BookImages which, const FigureRun& run) {
   FigureContent content;
   content.images = fmt::format("{}; {} images", images->description, images->more.size() + 2);
   FigureTable table{
-      "",
-      {"method", "iterations", "bad_0_5_percent", "bad_1_percent", "bad_2_percent", "rms_px"},
-      {}};
+      "", {"method", "iterations", "bad_0_5_percent", "bad_1_percent", "bad_2_percent", "rms_px"}};
   std::vector<SheetPicture> pictures;
   pictures.push_back(photograph_picture(
       *images, images->is_transposed ? "upper image" : "left image", images->left));
@@ -47,9 +45,6 @@ FigureContent make_several(BookImages which, const FigureRun& run) {
   content.tables.push_back(std::move(table));
   return content;
 }
-
-FigureContent make_tree(const FigureRun& run) { return make_several(BookImages::kTree, run); }
-FigureContent make_town(const FigureRun& run) { return make_several(BookImages::kTown, run); }
 
 }  // namespace
 
@@ -86,14 +81,14 @@ std::vector<BookFigure> several_images_figures() {
                "5 and epsilon_M = 0.1; 256x233 pixels, 16 disparities.",
        .defaults = several_images_settings(BookImages::kTree),
        .images = BookImages::kTree,
-       .make = make_tree},
+       .make = [](const FigureRun& run) { return make_several(BookImages::kTree, run); }},
       {.key = "6.19",
        .section = "6.6",
        .title = "town by the probabilistic model from five images",
        .book = "As Fig. 6.18 from cameras above each other; 240x256 pixels, 9 disparities.",
        .defaults = several_images_settings(BookImages::kTown),
        .images = BookImages::kTown,
-       .make = make_town}};
+       .make = [](const FigureRun& run) { return make_several(BookImages::kTown, run); }}};
 }
 
 }  // namespace vantage

@@ -13,6 +13,7 @@
 #include "engine/evaluation/method_comparison.h"
 #include "engine/figures/figure_families.h"
 #include "engine/figures/figure_images.h"
+#include "engine/figures/pair_runs.h"
 #include "engine/figures/scene_maps.h"
 #include "engine/figures/several_images.h"
 #include "engine/matching/stereo_matcher.h"
@@ -127,13 +128,10 @@ FigureContent make_evidence_times(const FigureRun& run) {
   };
   const DisparityMaps with_l2 = map_with(GradientNorm::kL2);
   const DisparityMaps with_octagon = map_with(GradientNorm::kOctagon);
-  int changed = 0;
-  const DisparityMap& map = with_l2.left.disparity_px;
-  for (int y = 0; y < map.height(); ++y) {
-    for (int x = 0; x < map.width(); ++x) {
-      changed += map.at(x, y) != with_octagon.left.disparity_px.at(x, y) ? 1 : 0;
-    }
-  }
+  const double changed_percent =
+      percent_where(with_l2.left.disparity_px, [&](int x, int y, float disparity) {
+        return disparity != with_octagon.left.disparity_px.at(x, y);
+      });
   const double pixels = static_cast<double>(images->left.width()) * images->left.height();
   return table_of_times(
       {{"machine", "SPARCstation 5", machine_text(run)},
@@ -146,7 +144,7 @@ FigureContent make_evidence_times(const FigureRun& run) {
        {"largest relative error of the octagon norm", "below 4 %",
         fmt::format("{:.2f} %", octagon_error_percent())},
        {"matches with the octagon norm", "usually not affected",
-        fmt::format("{:.2f} % of the winners change", 100 * changed / pixels)}},
+        fmt::format("{:.2f} % of the winners change", changed_percent)}},
       images->description);
 }
 

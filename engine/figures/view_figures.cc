@@ -24,19 +24,14 @@ DisparityMaps dense_maps(const FigureImages& images, const FigureRun& run,
                     run.execution);
 }
 
-void add_photographs(const FigureImages& images, std::vector<SheetPicture>& pictures) {
-  pictures.push_back(photograph_picture(images, "left", images.left));
-  pictures.push_back(photograph_picture(images, "right", images.right));
-}
-
 FigureContent show_maps_of(BookImages which, bool with_photographs, const FigureRun& run) {
   const auto images = images_of(which, run);
   FigureContent content{.images = images->description};
-  FigureTable table{
-      "", {"method", "bad_0_5_percent", "bad_1_percent", "bad_2_percent", "rms_px"}, {}};
+  FigureTable table{"", {"method", "bad_0_5_percent", "bad_1_percent", "bad_2_percent", "rms_px"}};
   std::vector<SheetPicture> pictures;
   if (with_photographs) {
-    add_photographs(*images, pictures);
+    pictures.push_back(photograph_picture(*images, "left", images->left));
+    pictures.push_back(photograph_picture(*images, "right", images->right));
   }
   for (const std::string& method : run.settings.methods) {
     const DisparityMaps maps = dense_maps(*images, run, method);
@@ -54,23 +49,6 @@ FigureContent show_maps_of(BookImages which, bool with_photographs, const Figure
   return content;
 }
 
-FigureContent make_kids_maps(const FigureRun& run) {
-  return show_maps_of(BookImages::kKids, true, run);
-}
-
-FigureContent make_birch_maps(const FigureRun& run) {
-  return show_maps_of(BookImages::kBirch, false, run);
-}
-
-FigureContent make_birch_images(const FigureRun& run) {
-  const auto images = images_of(BookImages::kBirch, run);
-  FigureContent content{.images = images->description};
-  std::vector<SheetPicture> pictures;
-  add_photographs(*images, pictures);
-  content.pictures.push_back({"", draw_picture_sheet("Pair", pictures, 2, kViewPicture)});
-  return content;
-}
-
 /// As the book makes views: pixels moved to the nearest position, no soft outlines.
 SynthesisOptions book_synthesis(HoleFilling holes) {
   return {.warp = WarpColour::kForward, .holes = holes, .soft_edges = false};
@@ -82,8 +60,7 @@ FigureContent make_views(BookImages which, HoleFilling holes, const std::vector<
   FigureContent content{.images = images->description};
   FigureTable table{"",
                     {"method", "view_x", "holes_percent", "psnr_db", "ssim",
-                     "mean_absolute_difference_grey_levels"},
-                    {}};
+                     "mean_absolute_difference_grey_levels"}};
   std::vector<SheetPicture> pictures;
   const ViewSynthesizer synthesizer(book_synthesis(holes), run.execution);
   for (const std::string& method : run.settings.methods) {
@@ -136,16 +113,6 @@ FigureContent make_views(BookImages which, HoleFilling holes, const std::vector<
 
 const std::vector<double> kFiveViews = {-0.5, 0, 0.5, 1, 1.5};
 
-FigureContent make_views_with_holes(const FigureRun& run) {
-  return make_views(BookImages::kKids, HoleFilling::kNone, kFiveViews, run);
-}
-FigureContent make_filled_views(const FigureRun& run) {
-  return make_views(BookImages::kKids, HoleFilling::kMirror, kFiveViews, run);
-}
-FigureContent make_birch_view(const FigureRun& run) {
-  return make_views(BookImages::kBirch, HoleFilling::kMirror, {0.5}, run);
-}
-
 }  // namespace
 
 std::vector<BookFigure> view_figures() {
@@ -155,51 +122,63 @@ std::vector<BookFigure> view_figures() {
   };
   const FigureSettings kids = settings_for(BookImages::kKids);
   const FigureSettings birch = settings_for(BookImages::kBirch);
-  return {{.key = "3.4",
-           .section = "3.3",
-           .title = "The pair kids and its disparity maps",
-           .book = "Left and right image (350x236) and both dense maps by the method of chapter 5; "
-                   "disparities 4 to 48.",
-           .defaults = kids,
-           .images = BookImages::kKids,
-           .make = make_kids_maps},
-          {.key = "3.5",
-           .section = "3.3",
-           .title = "Views of kids along the baseline, holes black",
-           .book = "Five views half a baseline apart; the second and fourth are the photographs. "
-                   "The centre view has many fewer holes than the extreme ones.",
-           .defaults = kids,
-           .images = BookImages::kKids,
-           .make = make_views_with_holes},
-          {.key = "3.6",
-           .section = "3.3",
-           .title = "Views of kids along the baseline, holes mirrored",
-           .book = "As Fig. 3.5 with holes filled by mirroring the intensities beside them along "
-                   "scanlines; some artifacts are noticeable.",
-           .defaults = kids,
-           .images = BookImages::kKids,
-           .make = make_filled_views},
-          {.key = "3.7",
-           .section = "3.3",
-           .title = "The pair birch",
-           .book = "Left and right image.",
-           .defaults = {.size_px = default_width(BookImages::kBirch), .seed = 1},
-           .images = BookImages::kBirch,
-           .make = make_birch_images},
-          {.key = "3.8",
-           .section = "3.3",
-           .title = "Disparity maps of birch",
-           .book = "Both maps, which contain many errors.",
-           .defaults = birch,
-           .images = BookImages::kBirch,
-           .make = make_birch_maps},
-          {.key = "3.9",
-           .section = "3.3",
-           .title = "Centre view of birch",
-           .book = "A view from between the cameras: fairly realistic in spite of poor maps.",
-           .defaults = birch,
-           .images = BookImages::kBirch,
-           .make = make_birch_view}};
+  return {
+      {.key = "3.4",
+       .section = "3.3",
+       .title = "The pair kids and its disparity maps",
+       .book = "Left and right image (350x236) and both dense maps by the method of chapter 5; "
+               "disparities 4 to 48.",
+       .defaults = kids,
+       .images = BookImages::kKids,
+       .make = [](const FigureRun& run) { return show_maps_of(BookImages::kKids, true, run); }},
+      {.key = "3.5",
+       .section = "3.3",
+       .title = "Views of kids along the baseline, holes black",
+       .book = "Five views half a baseline apart; the second and fourth are the photographs. "
+               "The centre view has many fewer holes than the extreme ones.",
+       .defaults = kids,
+       .images = BookImages::kKids,
+       .make =
+           [](const FigureRun& run) {
+             return make_views(BookImages::kKids, HoleFilling::kNone, kFiveViews, run);
+           }},
+      {.key = "3.6",
+       .section = "3.3",
+       .title = "Views of kids along the baseline, holes mirrored",
+       .book = "As Fig. 3.5 with holes filled by mirroring the intensities beside them along "
+               "scanlines; some artifacts are noticeable.",
+       .defaults = kids,
+       .images = BookImages::kKids,
+       .make =
+           [](const FigureRun& run) {
+             return make_views(BookImages::kKids, HoleFilling::kMirror, kFiveViews, run);
+           }},
+      {.key = "3.7",
+       .section = "3.3",
+       .title = "The pair birch",
+       .book = "Left and right image.",
+       .defaults = {.size_px = default_width(BookImages::kBirch), .seed = 1},
+       .images = BookImages::kBirch,
+       .make =
+           [](const FigureRun& run) {
+             return show_pair(BookImages::kBirch, "Pair", {"left", "right"}, kViewPicture, run);
+           }},
+      {.key = "3.8",
+       .section = "3.3",
+       .title = "Disparity maps of birch",
+       .book = "Both maps, which contain many errors.",
+       .defaults = birch,
+       .images = BookImages::kBirch,
+       .make = [](const FigureRun& run) { return show_maps_of(BookImages::kBirch, false, run); }},
+      {.key = "3.9",
+       .section = "3.3",
+       .title = "Centre view of birch",
+       .book = "A view from between the cameras: fairly realistic in spite of poor maps.",
+       .defaults = birch,
+       .images = BookImages::kBirch,
+       .make = [](const FigureRun& run) {
+         return make_views(BookImages::kBirch, HoleFilling::kMirror, {0.5}, run);
+       }}};
 }
 
 }  // namespace vantage

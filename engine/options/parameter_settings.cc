@@ -10,6 +10,7 @@
 
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/costs/cost_table.h"
+#include "engine/matching/options/match_presets.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/options/option_texts.h"
@@ -82,6 +83,8 @@ EnumNames<Fill> names_of(Fill /*type*/) {
           {"median", Fill::kMedian},        {"canonical", Fill::kCanonical},
           {"thin-plate", Fill::kThinPlate}, {"none", Fill::kNone}};
 }
+
+constexpr MatchPreset kDefaultPreset = MatchPreset::kBalanced;
 
 /// A line for each value of an enumeration that has a table, with its name and what it is.
 template <typename Table>
@@ -195,6 +198,20 @@ Defaults struct_defaults() {
   return texts;
 }
 
+/// What `auto` stands for with the preset that is in force unless another method is chosen.
+template <typename Overrides>
+void add_default_preset(const Overrides& preset, Defaults& texts) {
+  visit_fields(
+      [&texts](const auto& field, const auto& value) {
+        if (value) {
+          texts.at(field.option) +=
+              fmt::format("; {} with preset {}", default_text(*text_of(field.option), *value),
+                          name_of(kDefaultPreset));
+        }
+      },
+      preset);
+}
+
 /// "squared; gradient for gradient, …" where the default depends on the method.
 Defaults method_defaults() {
   Defaults texts = struct_defaults<MethodParameters>();
@@ -214,6 +231,13 @@ Defaults method_defaults() {
         },
         book, defaults);
   }
+  add_default_preset(preset_settings(kDefaultPreset).parameters, texts);
+  return texts;
+}
+
+Defaults refinement_defaults() {
+  Defaults texts = struct_defaults<RefinementOptions>();
+  add_default_preset(preset_settings(kDefaultPreset).refinement, texts);
   return texts;
 }
 
@@ -263,7 +287,7 @@ void add_gradient_settings(Settings& settings, MethodOverrides& parameters) {
 }
 
 void add_refinement_options(Settings& settings, RefinementOverrides& refinement) {
-  add_settings(settings, refinement, struct_defaults<RefinementOptions>(),
+  add_settings(settings, refinement, refinement_defaults(),
                [](const RefinementField&) { return true; });
 }
 

@@ -106,53 +106,45 @@ void Axis::make_logarithmic_ticks(bool round_ends) {
 
 void draw_chart_frame(const ChartArea& area, const std::string& title, const Axis& x_axis,
                       const Axis& y_axis, bool grid, Drawing& drawing) {
-  using Anchor = TextShape::Anchor;
   constexpr double kTick = 4;
+  constexpr Colour kGridInk{225, 225, 225};
   const double left = area.corner.x;
   const double right = area.corner.x + area.width;
   const double top = area.corner.y;
   const double bottom = area.corner.y + area.height;
-  auto& shapes = drawing.shapes;
 
   double last_label_end = -std::numeric_limits<double>::infinity();
   for (const Axis::Tick& tick : x_axis.ticks()) {
     const double x = left + tick.place * area.width;
     if (grid) {
-      shapes.emplace_back(StrokeShape{{{x, top}, {x, bottom}}, kGridInk, 1});
+      drawing.stroke({{x, top}, {x, bottom}}, 1, kGridInk);
     }
-    shapes.emplace_back(StrokeShape{{{x, bottom}, {x, bottom + kTick}}, kInk, 1});
+    drawing.stroke({{x, bottom}, {x, bottom + kTick}});
     const double half = text_width(tick.label, kTextSize) / 2;
     if (x - half > last_label_end) {  // omits labels that would overlap
-      shapes.emplace_back(
-          TextShape{{x, bottom + kTick + kTextSize}, tick.label, kTextSize, Anchor::kMiddle, kInk});
+      drawing.text({x, bottom + kTick + kTextSize}, tick.label, TextAnchor::kMiddle);
       last_label_end = x + half + 2;
     }
   }
   for (const Axis::Tick& tick : y_axis.ticks()) {
     const double y = bottom - tick.place * area.height;
     if (grid) {
-      shapes.emplace_back(StrokeShape{{{left, y}, {right, y}}, kGridInk, 1});
+      drawing.stroke({{left, y}, {right, y}}, 1, kGridInk);
     }
-    shapes.emplace_back(StrokeShape{{{left - kTick, y}, {left, y}}, kInk, 1});
-    shapes.emplace_back(TextShape{
-        {left - kTick - 3, y + 0.35 * kTextSize}, tick.label, kTextSize, Anchor::kEnd, kInk});
+    drawing.stroke({{left - kTick, y}, {left, y}});
+    drawing.text({left - kTick - 3, y + 0.35 * kTextSize}, tick.label, TextAnchor::kEnd);
   }
-  shapes.emplace_back(StrokeShape{
-      {{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}}, kInk, 1});
+  drawing.stroke({{left, top}, {right, top}, {right, bottom}, {left, bottom}, {left, top}});
 
-  shapes.emplace_back(TextShape{{left, top - 22}, title, kTextSize + 2, Anchor::kBegin, kInk});
+  drawing.text({left, top - 22}, title, TextAnchor::kBegin, kTextSize + 2);
   // Next to the axis it would have to be rotated; above it is easier to read.
-  shapes.emplace_back(TextShape{{left, top - 6}, y_axis.title(), kTextSize, Anchor::kBegin, kInk});
-  shapes.emplace_back(TextShape{{(left + right) / 2, bottom + kTick + 2.2 * kTextSize + 2},
-                                x_axis.title(),
-                                kTextSize,
-                                Anchor::kMiddle,
-                                kInk});
+  drawing.text({left, top - 6}, y_axis.title());
+  drawing.text({(left + right) / 2, bottom + kTick + 2.2 * kTextSize + 2}, x_axis.title(),
+               TextAnchor::kMiddle);
 }
 
 void draw_page_title(const std::string& title, Drawing& drawing) {
-  drawing.shapes.emplace_back(
-      TextShape{{16, 21}, title, kTextSize + 5, TextShape::Anchor::kBegin, kInk});
+  drawing.text({16, 21}, title, TextAnchor::kBegin, kTextSize + 5);
 }
 
 }  // namespace vantage

@@ -55,9 +55,6 @@ struct ChartArea {
   double height = 0;
 };
 
-inline constexpr Colour kInk{40, 40, 40};
-inline constexpr Colour kGridInk{225, 225, 225};
-inline constexpr double kTextSize = 11;
 /// Margins that draw_chart_frame() uses outside the area.
 inline constexpr double kFrameLeft = 62;
 inline constexpr double kFrameRight = 14;

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "engine/image/image.h"
@@ -23,74 +21,38 @@ struct DrawingPoint {
   double y = 0;
 };
 
-/// An open line through at least two points.
-struct StrokeShape {
-  std::vector<DrawingPoint> points;
-  Colour colour;
-  double width = 1;
-};
+enum class TextAnchor { kBegin, kMiddle, kEnd };
 
-/// A filled polygon with a thin outline, convex.
-struct PolygonShape {
-  std::vector<DrawingPoint> corners;
-  Colour fill;
-  Colour outline;
-};
+inline constexpr Colour kInk{40, 40, 40};
+inline constexpr double kTextSize = 11;
 
-/// A filled disc.
-struct DiscShape {
-  DrawingPoint centre;
-  double radius = 1;
-  Colour colour;
-};
+/// Shapes on a white background, painted in the order in which they are added.
+class Drawing {
+ public:
+  /// An open line through at least two points.
+  void stroke(const std::vector<DrawingPoint>& points, double line_width = 1, Colour colour = kInk);
+  /// A filled polygon with a thin outline, convex.
+  void polygon(const std::vector<DrawingPoint>& corners, Colour fill, Colour outline);
+  void disc(DrawingPoint centre, double radius, Colour colour);
+  /// One line, with its start, middle or end at `baseline`. What is not ASCII becomes "?".
+  void text(DrawingPoint baseline, std::string text, TextAnchor anchor = TextAnchor::kBegin,
+            double size = kTextSize);
+  /// A small picture, 8-bit RGB, scaled to `columns`×`rows` drawing units without smoothing and
+  /// embedded as PNG.
+  /// Throws Error if it cannot be encoded.
+  void picture(DrawingPoint corner, double columns, double rows, const Image<std::uint8_t>& rgb);
 
-/// A filled rectangle.
-struct BoxShape {
-  DrawingPoint corner;  ///< minimum x and y
-  double width = 0;
-  double height = 0;
-  Colour colour;
-};
+  /// The SVG element; documents need the declaration of XML before it.
+  [[nodiscard]] std::string svg() const;
 
-/// One line of text, ASCII only: rasterize() has no other characters.
-struct TextShape {
-  enum class Anchor { kBegin, kMiddle, kEnd };
-  DrawingPoint baseline;  ///< at the text's start, middle or end
-  std::string text;
-  double size = 12;  ///< font height
-  Anchor anchor = Anchor::kBegin;
-  Colour colour;
-};
-
-/// A small picture, 8-bit RGB, scaled without smoothing.
-struct PictureShape {
-  DrawingPoint corner;
-  double width = 0;
-  double height = 0;
-  Image<std::uint8_t> rgb;
-};
-
-using DrawingShape =
-    std::variant<StrokeShape, PolygonShape, DiscShape, BoxShape, TextShape, PictureShape>;
-
-/// Shapes on a white background, painted in order.
-struct Drawing {
   int width = 0;  ///< drawing units
   int height = 0;
-  std::vector<DrawingShape> shapes;
+
+ private:
+  std::string shapes_;
 };
 
 /// Approximate width of a text.
 double text_width(const std::string& text, double size);
-
-/// A complete SVG document; pictures are embedded as PNG.
-std::string to_svg(const Drawing& drawing);
-
-/// 8-bit RGB, anti-aliased, `pixels_per_unit` ≥ 1 times as large as the drawing.
-Image<std::uint8_t> rasterize(const Drawing& drawing, int pixels_per_unit);
-
-/// Writes .svg, or a picture of two pixels per unit in any format of write_photograph(),
-/// atomically. Throws as write_photograph() does.
-void write_drawing(const std::filesystem::path& path, const Drawing& drawing);
 
 }  // namespace vantage

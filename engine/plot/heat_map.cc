@@ -51,29 +51,20 @@ void draw_colour_scale(const PreviewRange& range, const ChartArea& beside, Drawi
     ramp.at(0, y) = range.min_px + part * (range.max_px - range.min_px);
   }
   const double x = beside.corner.x + beside.width + kScaleGap;
-  drawing.shapes.emplace_back(
-      PictureShape{{x, beside.corner.y},
-                   kScaleWidth,
-                   beside.height,
-                   colour_preview(ramp.view(), range.min_px, range.max_px)});
+  drawing.picture({x, beside.corner.y}, kScaleWidth, beside.height,
+                  colour_preview(ramp.view(), range.min_px, range.max_px));
   const Axis axis({}, range.min_px, range.max_px, false);
   for (const Axis::Tick& tick : axis.ticks()) {
     const double y = beside.corner.y + (1 - tick.place) * beside.height;
-    drawing.shapes.emplace_back(
-        StrokeShape{{{x + kScaleWidth, y}, {x + kScaleWidth + 3, y}}, kInk, 1});
-    drawing.shapes.emplace_back(TextShape{{x + kScaleWidth + 6, y + 0.35 * kTextSize},
-                                          tick.label,
-                                          kTextSize,
-                                          TextShape::Anchor::kBegin,
-                                          kInk});
+    drawing.stroke({{x + kScaleWidth, y}, {x + kScaleWidth + 3, y}});
+    drawing.text({x + kScaleWidth + 6, y + 0.35 * kTextSize}, tick.label);
   }
 }
 
 void draw_map(const HeatMap& map, const ChartArea& area, Drawing& drawing) {
   const PreviewRange range = range_of(map.values);
-  drawing.shapes.emplace_back(
-      PictureShape{area.corner, area.width, area.height,
-                   colour_preview(map.values.view(), range.min_px, range.max_px)});
+  drawing.picture(area.corner, area.width, area.height,
+                  colour_preview(map.values.view(), range.min_px, range.max_px));
   // A value's square extends half a step to either side.
   const double x_end = map.x_first + map.values.width() - 0.5;
   const double y_end = map.y_first + map.values.height() - 0.5;
@@ -87,10 +78,8 @@ void draw_map(const HeatMap& map, const ChartArea& area, Drawing& drawing) {
     const double x = area.corner.x + x_axis.place(map.marked->first) * area.width;
     const double y = area.corner.y + (1 - y_axis.place(map.marked->second)) * area.height;
     for (const double side : {-1.0, 1.0}) {
-      drawing.shapes.emplace_back(
-          StrokeShape{{{x + side * kHole, y}, {x + side * kArm, y}}, kMark, 1.5});
-      drawing.shapes.emplace_back(
-          StrokeShape{{{x, y + side * kHole}, {x, y + side * kArm}}, kMark, 1.5});
+      drawing.stroke({{x + side * kHole, y}, {x + side * kArm, y}}, 1.5, kMark);
+      drawing.stroke({{x, y + side * kHole}, {x, y + side * kArm}}, 1.5, kMark);
     }
   }
   draw_colour_scale(range, area, drawing);

@@ -67,13 +67,9 @@ double draw_legend(const std::vector<std::string>& names, double top, double wid
       y += kLegendRowHeight;
     }
     const Colour colour = colour_of(names, name);
-    drawing.shapes.emplace_back(StrokeShape{{{x, y}, {x + kLegendLine, y}}, colour, 2});
-    drawing.shapes.emplace_back(DiscShape{{x + kLegendLine / 2, y}, 3, colour});
-    drawing.shapes.emplace_back(TextShape{{x + kLegendLine + 6, y + 0.35 * kTextSize},
-                                          name,
-                                          kTextSize,
-                                          TextShape::Anchor::kBegin,
-                                          kInk});
+    drawing.stroke({{x, y}, {x + kLegendLine, y}}, 2, colour);
+    drawing.disc({x + kLegendLine / 2, y}, 3, colour);
+    drawing.text({x + kLegendLine + 6, y + 0.35 * kTextSize}, name);
     x += entry;
   }
   return y + kLegendRowHeight / 2 - top;
@@ -84,11 +80,11 @@ void draw_series(const PlotSeries& series, const ChartArea& area, const Axis& x_
   std::vector<DrawingPoint> points;
   const auto finish_stroke = [&] {
     if (points.size() > 1) {
-      drawing.shapes.emplace_back(StrokeShape{points, colour, 1.6});
+      drawing.stroke(points, 1.6, colour);
     }
     if (markers || points.size() == 1) {
       for (const DrawingPoint& point : points) {
-        drawing.shapes.emplace_back(DiscShape{point, 2.6, colour});
+        drawing.disc(point, 2.6, colour);
       }
     }
     points.clear();

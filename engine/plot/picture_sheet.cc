@@ -66,15 +66,12 @@ Drawing draw_picture_sheet(const std::string& title, const std::vector<SheetPict
       const auto lines = lines_within(pictures[i].title, width);
       double baseline = top - 4 - static_cast<double>(lines.size() - 1) * kTitleLine;
       for (const std::string& line : lines) {
-        drawing.shapes.emplace_back(
-            TextShape{{x, baseline}, line, kTextSize, TextShape::Anchor::kBegin, kInk});
+        drawing.text({x, baseline}, line);
         baseline += kTitleLine;
       }
-      drawing.shapes.emplace_back(
-          PictureShape{{x, top},
-                       width,
-                       width * pictures[i].pixels.height() / pictures[i].pixels.width(),
-                       in_rgb(pictures[i].pixels)});
+      drawing.picture({x, top}, width,
+                      width * pictures[i].pixels.height() / pictures[i].pixels.width(),
+                      in_rgb(pictures[i].pixels));
     }
     top += height + kPictureGap;
   }

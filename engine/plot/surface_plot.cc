@@ -82,55 +82,45 @@ void draw_meshes(const SurfacePlot& plot, const Projection& projection, Drawing&
       const int front = std::min(y + step, rows - 1);
       const std::array<std::pair<int, int>, 4> corners = {
           {{x, y}, {right, y}, {right, front}, {x, front}}};
-      PolygonShape mesh{{}, {}, Colour{70, 70, 70}};
+      std::vector<DrawingPoint> mesh;
       double sum = 0;
       for (const auto& [corner_x, corner_y] : corners) {
         const double value = plot.values.at(corner_x, corner_y);
         sum += value;
-        mesh.corners.push_back(projection.point(corner_x, corner_y, value));
+        mesh.push_back(projection.point(corner_x, corner_y, value));
       }
       if (std::isfinite(sum)) {
-        mesh.fill = colour_of_height(std::clamp(projection.height_of(sum / 4), 0.0, 1.0));
-        drawing.shapes.emplace_back(std::move(mesh));
+        drawing.polygon(mesh, colour_of_height(std::clamp(projection.height_of(sum / 4), 0.0, 1.0)),
+                        {70, 70, 70});
       }
     }
   }
 }
 
 void draw_surface(const SurfacePlot& plot, DrawingPoint corner, Drawing& drawing) {
-  using Anchor = TextShape::Anchor;
   const Projection projection(plot, corner);
-  const auto text = [&drawing](DrawingPoint at, std::string words, Anchor anchor) {
-    drawing.shapes.emplace_back(TextShape{at, std::move(words), kTextSize, anchor, kInk});
-  };
-  text({corner.x + kSurfaceMargin, corner.y + 14}, plot.title, Anchor::kBegin);
-  text({corner.x + kSurfaceMargin, corner.y + 14 + kTextSize + 3},
-       fmt::format("{}: {:.4g} to {:.4g}", plot.z_title, projection.min, projection.max),
-       Anchor::kBegin);
+  drawing.text({corner.x + kSurfaceMargin, corner.y + 14}, plot.title);
+  drawing.text({corner.x + kSurfaceMargin, corner.y + 14 + kTextSize + 3},
+               fmt::format("{}: {:.4g} to {:.4g}", plot.z_title, projection.min, projection.max));
   const int last_x = plot.values.width() - 1;
   const int last_y = plot.values.height() - 1;
   const double floor = projection.min;
-  drawing.shapes.emplace_back(
-      StrokeShape{{projection.point(0, 0, floor), projection.point(last_x, 0, floor),
-                   projection.point(last_x, last_y, floor), projection.point(0, last_y, floor),
-                   projection.point(0, 0, floor)},
-                  kInk,
-                  0.8});
+  drawing.stroke({projection.point(0, 0, floor), projection.point(last_x, 0, floor),
+                  projection.point(last_x, last_y, floor), projection.point(0, last_y, floor),
+                  projection.point(0, 0, floor)},
+                 0.8);
   draw_meshes(plot, projection, drawing);
   // Axes run along the front edges.
-  const auto below = [](DrawingPoint point, double dx) {
-    return DrawingPoint{point.x + dx, point.y + kTextSize + 3};
+  const auto below = [&](double x, double y, double dx, std::string words, TextAnchor anchor) {
+    const DrawingPoint point = projection.point(x, y, floor);
+    drawing.text({point.x + dx, point.y + kTextSize + 3}, std::move(words), anchor);
   };
-  text(below(projection.point(0, last_y, floor), -4), fmt::format("{}", plot.x_first),
-       Anchor::kMiddle);
-  text(below(projection.point(last_x / 2.0, last_y, floor), -8), plot.x_title, Anchor::kEnd);
-  text(below(projection.point(last_x, last_y, floor), -14),
-       fmt::format("{}", plot.x_first + last_x), Anchor::kEnd);
-  text(below(projection.point(last_x, last_y, floor), 14), fmt::format("{}", plot.y_first + last_y),
-       Anchor::kBegin);
-  text(below(projection.point(last_x, last_y / 2.0, floor), 8), plot.y_title, Anchor::kBegin);
-  text(below(projection.point(last_x, 0, floor), 4), fmt::format("{}", plot.y_first),
-       Anchor::kMiddle);
+  below(0, last_y, -4, fmt::format("{}", plot.x_first), TextAnchor::kMiddle);
+  below(last_x / 2.0, last_y, -8, plot.x_title, TextAnchor::kEnd);
+  below(last_x, last_y, -14, fmt::format("{}", plot.x_first + last_x), TextAnchor::kEnd);
+  below(last_x, last_y, 14, fmt::format("{}", plot.y_first + last_y), TextAnchor::kBegin);
+  below(last_x, last_y / 2.0, 8, plot.y_title, TextAnchor::kBegin);
+  below(last_x, 0, 4, fmt::format("{}", plot.y_first), TextAnchor::kMiddle);
 }
 
 }  // namespace

@@ -15,8 +15,6 @@ struct MachineCeilings {
   double all_l2_gb_per_s = 0;
   double core_memory_gb_per_s = 0;  ///< loads and stores of the triad, without write-allocate loads
   double all_memory_gb_per_s = 0;
-
-  bool operator==(const MachineCeilings&) const = default;
 };
 
 /// Measures for about `seconds` (> 0, usually 2). Takes the best of many short measurements each,

@@ -15,8 +15,6 @@ struct ProfileSample {
   double median = 0;
   double min = 0;
   double max = 0;
-
-  bool operator==(const ProfileSample&) const = default;
 };
 
 /// Work of the stages of one name in one run, summed over all threads, passes, strips and frames.
@@ -29,8 +27,6 @@ struct StageProfile {
   double cells = 0;
   double operations = 0;
   double bytes = 0;  ///< loaded and stored by the kernel, from any cache level
-
-  bool operator==(const StageProfile&) const = default;
 };
 
 /// A named part of the work, or of the waiting. Stages of chains are inside the parts that sweep
@@ -39,8 +35,6 @@ struct PartProfile {
   std::string name;
   ProfileSample seconds;  ///< over all threads, excluding nested parts
   double count = 0;       ///< number of spans
-
-  bool operator==(const PartProfile&) const = default;
 };
 
 struct ThreadProfile {
@@ -48,8 +42,6 @@ struct ThreadProfile {
   bool is_in_pool = false;
   double work_s = 0;
   double wait_s = 0;
-
-  bool operator==(const ThreadProfile&) const = default;
 };
 
 /// Causes of waiting of the pool's threads, in seconds over all of them; see waiting_causes().
@@ -58,8 +50,6 @@ struct WaitingProfile {
   ProfileSample computing_s;  ///< other work
   ProfileSample writing_s;    ///< encoding or writing of results
   ProfileSample nothing_s;    ///< no thread was doing anything recorded
-
-  bool operator==(const WaitingProfile&) const = default;
 };
 
 /// One activity of one thread, for drawing: the innermost recorded span.
@@ -69,8 +59,6 @@ struct TimelineSpan {
   double begin_s = 0;
   double end_s = 0;
   int frame = -1;  ///< −1: none
-
-  bool operator==(const TimelineSpan&) const = default;
 };
 
 /// A thread's row in the timeline. Spans too short to be visible are merged with neighbours of
@@ -79,8 +67,6 @@ struct TimelineRow {
   std::string thread;
   bool is_in_pool = false;
   std::vector<TimelineSpan> spans;  ///< in order, disjoint
-
-  bool operator==(const TimelineRow&) const = default;
 };
 
 /// Measurements on one number of threads.
@@ -100,8 +86,6 @@ struct ThreadCountProfile {
   std::vector<PartProfile> waits;      ///< longest first
   WaitingProfile waiting_for;          ///< the same time as in waits, by cause
   std::vector<ThreadProfile> workers;  ///< of the run with the median wall time
-
-  bool operator==(const ThreadCountProfile&) const = default;
 };
 
 /// Speed-up by more threads.
@@ -111,24 +95,18 @@ struct SpeedUp {
   double efficiency = 0;
   /// Karp and Flatt's serial fraction; empty for the fewest threads.
   std::optional<double> serial_fraction;
-
-  bool operator==(const SpeedUp&) const = default;
 };
 
 /// Owners of the memory at its peak, as far as known.
 struct MemoryOwner {
   std::string name;
   std::uint64_t bytes = 0;
-
-  bool operator==(const MemoryOwner&) const = default;
 };
 
 /// Processor counters over one run, all threads. Empty where the system provides none.
 struct HardwareCounts {
   std::map<std::string, ProfileSample> counts;  ///< "instructions", "cycles", …
   std::string absence;                          ///< why some or all are missing; empty: all present
-
-  bool operator==(const HardwareCounts&) const = default;
 };
 
 /// Result of `vantage profile`.
@@ -153,8 +131,6 @@ struct Profile {
   double timeline_s = 0;              ///< its wall time
   std::vector<MemoryOwner> memory;    ///< largest first
   HardwareCounts hardware;            ///< at the largest thread count
-
-  bool operator==(const Profile&) const = default;
 };
 
 }  // namespace vantage

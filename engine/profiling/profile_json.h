@@ -11,9 +11,4 @@ namespace vantage {
 /// format version as `profile_schema`. Non-finite numbers are null. Thread rule: pure.
 std::string profile_json(const Profile& profile);
 
-/// Reads such a document, without derived values. Throws Error naming the file and the key when
-/// something is missing or invalid; unknown keys are ignored, so that files of older and newer
-/// versions with the same `profile_schema` can be read.
-Profile read_profile(const std::string& path);
-
 }  // namespace vantage

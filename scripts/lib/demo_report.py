@@ -59,13 +59,19 @@ def views_section():
                    "controls autoplay muted loop playsinline") + "</div>")
 
 
+def method_text(settings):
+    """How a pair was matched, by the settings of its report: what `auto` stood for."""
+    resolved = settings["resolved"]
+    return (f'Preset {resolved["preset"]}: cost {resolved["cost"]}, aggregation '
+            f'{resolved["aggregate"]}, {resolved["levels"]} levels, disparities '
+            f'{resolved["disparities"].replace(":", " to ")} px')
+
+
 def maps_section(demo, scene, colours):
     low, high = colours
-    settings = demo.steps["match"].report["settings"]
     return ("<h2>Disparity maps</h2>"
-            f'<p class="soft">Method {settings["method"]}, window {settings["window"]} px, '
-            f'disparities {settings["disparities"].replace(":", " to ")} px. All maps share one '
-            "scale of colours.</p>" +
+            f'<p class="soft">{method_text(demo.steps["match"].report["settings"])}. All maps share '
+            "one scale of colours.</p>" +
             legend(picture.TURBO, f"{low:.0f} px", f"{high:.0f} px", "unknown") +
             '<div class="grid">' +
             figure("pictures/left.png", "Left map", '<a href="maps/left.pfm">left.pfm</a>') +

@@ -48,7 +48,6 @@ TEST_F(InputBadFiles, ImagesThatCannotBeMatched) {
 TEST_F(InputBadFiles, JsonNestedToAnyDepth) {
   const std::string deep = std::string(100000, '[') + std::string(100000, ']');
   write_file(folder_ / "poses.json", "{\"view\":" + deep + "}");
-  write_file(folder_ / "profile.json", "{\"profile_schema\":" + deep + "}");
   fs::create_directories(folder_ / "run/.vantage");
   write_file(folder_ / "run/.vantage/run.json", "{\"format\":" + deep + "}");
   write_file(folder_ / "run/scene.json", "{\"format\":" + deep + "}");
@@ -56,7 +55,6 @@ TEST_F(InputBadFiles, JsonNestedToAnyDepth) {
       {{"synth", left_, right_, "--disparities=0:9", "--pose", folder_ / "poses.json", "-o",
         folder_ / "view.png"},
        2},
-      {{"profile", "--compare", folder_ / "profile.json", folder_ / "profile.json"}, 1},
       {{"merge", folder_ / "run"}, 1},
       {{"scene info", folder_ / "run"}, 1}};
   for (const auto& [arguments, exit_code] : cases) {

@@ -6,7 +6,6 @@
 #include "engine/generation/layered_scene.h"
 #include "engine/image/transposed.h"
 #include "tests/apps/sampling.h"
-#include "tests/well_formed_xml.h"
 
 namespace vantage::command_book_response_test {
 
@@ -50,46 +49,19 @@ TEST_F(ResponseCommand, PrintsTheDominantDisplacements) {
   EXPECT_EQ(at, 2);
 }
 
-TEST_F(ResponseCommand, WritesArraysPlotsAndAReport) {
-  const ProcessResult result = succeeds(
-      response(folder_ / "r.npy", {"--displacements-x=-3:9", "--displacements-y=-2:2", "--plot",
-                                   folder_ / "r.svg", "--report", folder_ / "r.json", "--quiet"}));
+TEST_F(ResponseCommand, WritesArraysAndAReport) {
+  const ProcessResult result =
+      succeeds(response(folder_ / "r.npy", {"--displacements-x=-3:9", "--displacements-y=-2:2",
+                                            "--report", folder_ / "r.json", "--quiet"}));
   EXPECT_THAT(result.err, IsEmpty());
   const std::string npy = read_file(folder_ / "r.npy");
   EXPECT_THAT(npy.substr(0, 128), HasSubstr("'descr': '<f8'"));
   EXPECT_THAT(npy.substr(0, 128), HasSubstr("'shape': (5,5,13,)"));
   EXPECT_EQ((npy.size() - 5 * 5 * 13 * 8) % 64, 0U);
-  const XmlOutline plot = read_xml(read_file(folder_ / "r.svg"));
-  EXPECT_EQ(plot.error, "");
-  EXPECT_EQ(plot.count("image"), 2 * 5);
   const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["settings"]["displacements-x"], "-3:9");
   EXPECT_EQ(report["results"]["dominant"]["whole"]["dx_px"], 2);
   EXPECT_EQ(report["results"]["dominant"]["whole"]["dy_px"], 0);
-}
-
-TEST_F(ResponseCommand, DifferencesAndEvidencePictures) {
-  succeeds(response(folder_ / "r.npy",
-                    {"--rms", folder_ / "d.csv", "--evidence-pictures", folder_ / "e.svg", "--plot",
-                     folder_ / "p.svg", "--displacements-x=-3:8", "--displacements-y=-1:1",
-                     "--report", folder_ / "r.json", "--gradient-components", "x"}));
-  EXPECT_THAT(read_file(folder_ / "d.csv"), HasSubstr("dx_px,dy_px,rms_grey_levels\n-3,-1,"));
-  EXPECT_THAT(read_file(folder_ / "e.svg"), HasSubstr("bottom-right: "));
-  EXPECT_THAT(read_file(folder_ / "p.svg"), HasSubstr("negated RMS difference: largest at 2, 0"));
-  const auto smallest = read_json(folder_ / "r.json")["results"]["smallest_rms"];
-  EXPECT_EQ(smallest["dx_px"], 2);
-  EXPECT_EQ(smallest["dy_px"], 0);
-}
-
-TEST_F(ResponseCommand, CurvesForOneRange) {
-  succeeds(response(folder_ / "r.csv", {"--plot", folder_ / "x.svg"}));
-  succeeds(response(folder_ / "r.csv", {"--displacements-x=2:2", "--displacements-y=-4:4", "--plot",
-                                        folder_ / "y.png", "--norm", "octagon"}));
-  const XmlOutline plot = read_xml(read_file(folder_ / "x.svg"));
-  EXPECT_EQ(plot.error, "");
-  EXPECT_EQ(plot.count("image"), 0);
-  EXPECT_EQ(plot.count("circle"), 5);  // the legend
-  EXPECT_GT(read_photograph(folder_ / "y.png").width(), 300);
 }
 
 using InputResponseCommand = ResponseCommand;
@@ -103,8 +75,7 @@ TEST_F(InputResponseCommand, BadInputIsOneLine) {
       {{"--alpha", "-1"}, "alpha is -1"},
       {{"--norm", "l1", "--gradient-components", "x"}, "norm has no effect"},
       {{"--gradient", "prewitt"}, "--gradient is 'prewitt'"},
-      {{"--plot", folder_ / "plot.txt"}, "--plot is"},
-      {{"--plot", left_}, "which is also an input"}};
+      {{"--report", left_}, "which is also an input"}};
   expect_refusals("book response", folder_.path(), refusals,
                   [&](const Words& words) { return response(out, words); });
   EXPECT_EQ(response(folder_ / "r.txt").exit_code, 2);
@@ -114,11 +85,10 @@ TEST_F(InputResponseCommand, BadInputIsOneLine) {
 
 TEST_F(ResponseCommand, ConstantImagesHaveNoneAndStillWriteTheirData) {
   write_grey(folder_ / "grey.png", 40, 30, 77);
-  const ProcessResult result =
-      succeeds(run_vantage({"book", "response", folder_ / "grey.png", folder_ / "grey.png", "-o",
-                            folder_ / "r.csv", "--plot", folder_ / "r.svg"}));
+  const ProcessResult result = succeeds(run_vantage(
+      {"book", "response", folder_ / "grey.png", folder_ / "grey.png", "-o", folder_ / "r.csv"}));
   EXPECT_THAT(result.out, HasSubstr("none"));
-  EXPECT_EQ(read_xml(read_file(folder_ / "r.svg")).error, "");
+  EXPECT_THAT(read_file(folder_ / "r.csv"), HasSubstr("dx_px,dy_px,whole"));
 }
 
 /// "MIN:MAX" of a report.

@@ -250,6 +250,9 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   EXPECT_THAT(result.out, HasSubstr("--disparities MIN:MAX"));
   EXPECT_EQ(result.out.find("--trace FILE"), std::string::npos);
   EXPECT_THAT(run_vantage({"help", "match", "--help-all"}).out, HasSubstr("--trace FILE"));
+  // What `auto` is without a method, too.
+  EXPECT_THAT(run_vantage({"match", "--help-json"}).out,
+              HasSubstr("on: 10; auto: 0; 10 with preset balanced"));
   EXPECT_EQ(run_vantage({"--version"}).out.rfind("vantage ", 0), 0U);
   EXPECT_THAT(run_vantage({"--version", "--verbose"}).out,
               AllOf(HasSubstr("FFmpeg"), HasSubstr("processor"), HasSubstr("instruction sets")));

@@ -140,20 +140,6 @@ TEST_F(SlowProfileTest, EndsWithTheBudgetButMakesARound) {
   EXPECT_EQ(read_json(json_).at("thread_counts")[0].at("runs"), 1);
 }
 
-TEST_F(SlowProfileTest, ComparesWithAnotherProgram) {
-  const std::string other = folder_ / "other-vantage";
-  fs::copy_file(test_paths::vantage_binary(), other);
-  const ProcessResult result = succeeds(profile({"--threads", "1", "--quiet", "--against", other},
-                                                match_command({"--method", "ssd"})));
-  EXPECT_THAT(result.out,
-              AllOf(HasSubstr("A  " + other), HasSubstr("stage column SSD"), HasSubstr("too few")));
-  EXPECT_EQ(read_json(json_).at("thread_counts")[0].at("runs"), 1);
-  expect_failure(
-      profile({"--threads", "1", "--quiet", "--against", folder_ / "none"}, match_command()), 1,
-      "none cannot be started");
-  EXPECT_EQ(out_.entries(), 0U);
-}
-
 TEST_F(SlowProfileTest, EndsCleanlyWhenInterrupted) {
   const TemporaryFolder streams;
   const VantageProcess process(
@@ -172,67 +158,9 @@ TEST_F(SlowProfileTest, EndsCleanlyWhenInterrupted) {
 
 TEST_F(ProfileTest, AnswersHelpOfBoth) {
   const ProcessResult own = succeeds(run_vantage({"profile", "--help"}));
-  EXPECT_THAT(own.out,
-              AllOf(HasSubstr("--compare"), HasSubstr("--budget"), HasSubstr("match|run")));
+  EXPECT_THAT(own.out, AllOf(HasSubstr("--budget"), HasSubstr("match|run")));
   const ProcessResult of_match = succeeds(run_vantage({"profile", "match", "--help"}));
   EXPECT_THAT(of_match.out, HasSubstr("--disparities"));
-}
-
-/// Two files made from one measured profile, and what --compare says of them.
-class ComparedProfiles : public ProfileTest {
- protected:
-  ComparedProfiles() {
-    succeeds(profile({"--threads", "1", "--quiet"}, match_command()));
-    first_ = read_json(json_);
-    json& count = first_["thread_counts"][0];
-    count["runs"] = 5;
-    count["wall_s"] = {{"median", 2.0}, {"least", 1.9}, {"most", 2.1}};
-    second_ = first_;
-  }
-
-  [[nodiscard]] ProcessResult compare() const {
-    write_file(folder_ / "a.json", first_.dump());
-    write_file(folder_ / "b.json", second_.dump());
-    return run_vantage({"profile", "--compare", folder_ / "a.json", folder_ / "b.json"});
-  }
-
-  json first_;
-  json second_;
-};
-
-using InputComparedProfiles = ComparedProfiles;
-
-TEST_F(InputComparedProfiles, HaveAVerdictOnlyWhereRangesAreApart) {
-  ProcessResult result = succeeds(compare());
-  EXPECT_THAT(result.out, AllOf(HasSubstr("no difference seen"), Not(HasSubstr("faster")),
-                                Not(HasSubstr("slower")), Not(HasSubstr("warning"))));
-  second_["thread_counts"][0]["wall_s"] = {{"median", 1.0}, {"least", 0.9}, {"most", 1.1}};
-  result = compare();
-  EXPECT_THAT(result.out, AllOf(HasSubstr("2.00x faster"), HasSubstr("0.500")));
-  second_["isa"] = "another";
-  EXPECT_THAT(compare().out, HasSubstr("warning: the instruction set differs"));
-}
-
-TEST_F(InputComparedProfiles, MustBeProfiles) {
-  const auto refused = [&](const char* text) {
-    const ProcessResult result = compare();
-    expect_one_line(result, 1, "profile");
-    EXPECT_THAT(result.err, AllOf(HasSubstr(folder_ / "b.json"), HasSubstr(text)));
-  };
-  second_["thread_counts"][0]["wall_s"].erase("median");
-  refused("thread_counts[0].wall_s.median is missing or wrong, expected a number");
-  second_ = first_;
-  second_["thread_counts"] = 7;
-  refused("thread_counts is missing or wrong, expected a list");
-  second_ = first_;
-  second_["profile_schema"] = 2;
-  refused("profile_schema is 2, expected 1: another version of vantage wrote it, profile again");
-  second_ = json::array();
-  refused("is no profile");
-  expect_failure(run_vantage({"profile", "--compare", folder_ / "a.json"}), 2,
-                 "--compare is given 1 file, expected two");
-  expect_failure(run_vantage({"profile", "--compare", folder_ / "a.json", folder_ / "none.json"}),
-                 1, "none.json: no such file");
 }
 
 /// Of a sequence, in a folder that holds a finished run.

@@ -148,4 +148,27 @@ TEST_F(EstimatedScene, WrongInputIsRefused) {
   EXPECT_THAT(problem({}), HasSubstr("there are 1 images, expected 2 to 500"));
 }
 
+// One behind the other: poses are found, but no two images can be rectified.
+TEST(EstimatedCameras, WhatSceneBuildWillRefuseIsToldAtOnce) {
+  const TemporaryFolder folder;
+  std::string cameras;
+  for (const char* const t : {"0, 0, 0", "0, 0, -2", "0, 0, -4"}) {
+    cameras += fmt::format(
+        "[[view]]\nK = [400, 0, 160, 0, 400, 120, 0, 0, 1]\n"
+        "R = [1, 0, 0, 0, 1, 0, 0, 0, 1]\nt = [{}]\n",
+        t);
+  }
+  write_file(folder / "cameras.toml", cameras);
+  succeeds(run_vantage({"generate", "scene", "--width", "320", "--height", "240", "--pose",
+                        folder / "cameras.toml", "-o", folder / "row", "--quiet"}));
+  const ProcessResult result = succeeds(run_vantage(
+      {"scene", "poses", "--images", folder / "row/camera-*.png", "-o", folder / "model"}));
+  EXPECT_THAT(result.err, HasSubstr("warning: 'vantage scene build' will refuse this: "));
+  const std::string why = "no other camera beside it looks the same way";
+  EXPECT_THAT(result.err, HasSubstr(why));
+  expect_failure(run_vantage({"scene", "build", "--poses", folder / "model", "--images",
+                              folder / "row", "-o", folder / "scene"}),
+                 1, why);
+}
+
 }  // namespace vantage::estimated_scene_test

@@ -7,6 +7,8 @@
 #include <array>
 #include <vector>
 
+#include "engine/profiling/stage_figures.h"
+
 namespace vantage {
 namespace profile_figures_test {
 
@@ -89,6 +91,20 @@ TEST(AmdahlFit, IsTheLeastOfTheSquares) {
 TEST(AmdahlFit, NeedsTwoNumbersOfThreads) {
   EXPECT_FALSE(amdahl_fit(std::array{speed_up(3, 1)}));
   EXPECT_FALSE(amdahl_fit({}));
+}
+
+TEST(StageFigures, AreWhatTheCountsComeTo) {
+  StageProfile stage;
+  EXPECT_EQ(nanoseconds_per_cell(stage), 0);
+  EXPECT_EQ(cells_per_second(stage), 0);
+  EXPECT_EQ(halo_share(stage), 0);
+  stage.seconds.median = 2;
+  stage.cells = 4e9;
+  stage.columns = 125;
+  stage.own_columns = 100;
+  EXPECT_EQ(nanoseconds_per_cell(stage), 0.5);
+  EXPECT_EQ(cells_per_second(stage), 2e9);
+  EXPECT_EQ(halo_share(stage), 0.25);
 }
 
 }  // namespace profile_figures_test

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "apps/settings/common_options.h"
+#include "engine/options/settings.h"
+#include "engine/rectification/kitti_cameras.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/sequence/pair_source.h"
+
+namespace vantage::apps {
+
+/// What `rectify` is asked for.
+struct RectifyJob {
+  PairSourceOptions input;
+  std::string calibration;  ///< file; empty: from the images alone
+  int sample_pairs = 10;
+  std::optional<KittiCameras> kitti_cameras;
+  RectificationOptions rectification;
+  std::optional<double> baseline_m;  ///< empty: that of the calibration
+  std::string output;                ///< folder
+  std::string matrices;
+  std::string valid_mask;
+  CommonOptions common;
+};
+
+/// Estimates or reads the cameras, measures the rows, and writes images, matrices and mask until
+/// Ctrl-C. Returns the exit code. Throws UsageError and Error.
+int run_rectify(RectifyJob& job, const Settings& settings);
+
+}  // namespace vantage::apps
