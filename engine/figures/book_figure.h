@@ -85,9 +85,9 @@ struct FigureRun {
   const FigureImages* given = nullptr;      ///< in place of the book's images; null: stand-ins
 };
 
-/// A figure or table of the book.
+/// A figure of the book.
 struct BookFigure {
-  std::string_view key;      ///< its number in the book, "6.16"; "6.6-times" for times of a section
+  std::string_view key;      ///< its number in the book, "6.16"
   std::string_view section;  ///< of the book
   std::string_view title;
   std::string_view book;  ///< what the book shows and prints

@@ -16,7 +16,6 @@ std::vector<BookFigure> pair_map_figures();
 std::vector<BookFigure> pattern_figures();
 std::vector<BookFigure> response_figures();
 std::vector<BookFigure> several_images_figures();
-std::vector<BookFigure> time_tables();
 std::vector<BookFigure> view_figures();
 
 }  // namespace vantage

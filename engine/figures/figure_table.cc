@@ -15,21 +15,14 @@
 namespace vantage {
 namespace {
 
-constexpr auto kFamilies = {view_figures,
-                            formula_figures,
-                            response_figures,
-                            gradient_figures,
-                            pattern_figures,
-                            pair_map_figures,
-                            disparity_space_figures,
-                            membrane_figures,
-                            comparison_figures,
-                            several_images_figures,
-                            time_tables};
+constexpr auto kFamilies = {
+    view_figures,       formula_figures,       response_figures,        gradient_figures,
+    pattern_figures,    pair_map_figures,      disparity_space_figures, membrane_figures,
+    comparison_figures, several_images_figures};
 
-/// "6.16" after "6.9"; what has a word follows the figures of its chapter.
+/// "6.16" after "6.9".
 struct FigureOrder {
-  explicit FigureOrder(std::string_view key) : has_word(key.find('-') != std::string_view::npos) {
+  explicit FigureOrder(std::string_view key) {
     const char* const end = key.data() + key.size();
     const auto after = std::from_chars(key.data(), end, chapter).ptr;
     if (after != end) {
@@ -39,7 +32,6 @@ struct FigureOrder {
   friend auto operator<=>(const FigureOrder&, const FigureOrder&) = default;
 
   int chapter = 0;
-  bool has_word = false;
   int number = 0;
 };
 

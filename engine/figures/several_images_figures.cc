@@ -6,11 +6,36 @@
 
 #include "engine/figures/figure_families.h"
 #include "engine/figures/scene_maps.h"
-#include "engine/figures/several_images.h"
 #include "engine/matching/stereo_matcher.h"
 
 namespace vantage {
 namespace {
+
+/// The left map by multiple-baseline stereo from all images (6.6).
+DisparityMap map_of_several(const FigureImages& images, const FigureSettings& settings,
+                            const std::string& method, int iterations, DisparityRange disparities,
+                            Execution& execution) {
+  MatchOptions options = scene_options(settings, method, iterations, disparities, false);
+  std::vector<OtherView> others = {{&images.right, images.baselines.front()}};
+  for (std::size_t i = 0; i < images.more.size(); ++i) {
+    others.push_back({&images.more[i], images.baselines[i + 1]});
+  }
+  DisparityMaps maps;
+  StereoMatcher(options, execution)
+      .match_several(images.left, others, {.right = false, .unmatched = false}, maps);
+  return std::move(maps.left.disparity_px);
+}
+
+/// 50 iterations with the parameters that the captions print.
+FigureSettings several_images_settings(BookImages images) {
+  FigureSettings settings{
+      .size_px = default_width(images), .iterations = {50}, .methods = {"bayes"}, .seed = 1};
+  settings.parameters.sigma_prior = 0.4;
+  settings.parameters.epsilon_prior = 0.01;
+  settings.parameters.sigma_measurement = 5;
+  settings.parameters.epsilon_measurement = 0.1;
+  return settings;
+}
 
 FigureContent make_several(BookImages which, const FigureRun& run) {
   constexpr double kPictureWidth = 300;
@@ -47,30 +72,6 @@ FigureContent make_several(BookImages which, const FigureRun& run) {
 }
 
 }  // namespace
-
-DisparityMap map_of_several(const FigureImages& images, const FigureSettings& settings,
-                            const std::string& method, int iterations, DisparityRange disparities,
-                            Execution& execution) {
-  MatchOptions options = scene_options(settings, method, iterations, disparities, false);
-  std::vector<OtherView> others = {{&images.right, images.baselines.front()}};
-  for (std::size_t i = 0; i < images.more.size(); ++i) {
-    others.push_back({&images.more[i], images.baselines[i + 1]});
-  }
-  DisparityMaps maps;
-  StereoMatcher(options, execution)
-      .match_several(images.left, others, {.right = false, .unmatched = false}, maps);
-  return std::move(maps.left.disparity_px);
-}
-
-FigureSettings several_images_settings(BookImages images) {
-  FigureSettings settings{
-      .size_px = default_width(images), .iterations = {50}, .methods = {"bayes"}, .seed = 1};
-  settings.parameters.sigma_prior = 0.4;
-  settings.parameters.epsilon_prior = 0.01;
-  settings.parameters.sigma_measurement = 5;
-  settings.parameters.epsilon_measurement = 0.1;
-  return settings;
-}
 
 std::vector<BookFigure> several_images_figures() {
   return {

@@ -151,6 +151,8 @@ TEST_F(ViewCommand, IsOneFileThatNamesNoOther) {
   EXPECT_THAT(text, Not(HasSubstr("//fonts")));
   EXPECT_THAT(text, Not(HasSubstr("<link")));
   EXPECT_THAT(text, Not(HasSubstr("import ")));
+  // Sliders say what they do, not XS and YS.
+  EXPECT_THAT(text, AllOf(HasSubstr(">sideways <input"), HasSubstr(">up and down <input")));
   const std::regex source("(src|href)=\"([^\"]{0,10})");
   int sources = 0;
   for (auto found = std::sregex_iterator(text.begin(), text.end(), source);
