@@ -101,18 +101,6 @@ constexpr KernelWork ray_census_energy_work(int thresholds) {
   return ray_census_look_up_work(thresholds, 0.25);
 }
 
-/// Grey levels: two distances of three operations and their minimum. Gradients: two differences of
-/// two operations joined by or, and their sum. Both are scaled and clamped to steps. Then the sum
-/// or product of the terms, and two operations that convert to float. All planes except codes are
-/// 16-bit.
-constexpr KernelWork combined_work(int channels, bool has_census, bool has_gradient) {
-  const double levels = 3.0 / 2 * channels;
-  const KernelWork grey = {7.0 * channels + (channels - 1) + 2 + 2, 0, levels + 1, levels};
-  const KernelWork census = {7 + 1, 0, 2, 2};
-  const KernelWork gradient = {7 + 2 + 1, 0, 1, 1};
-  return grey + (has_census ? census : KernelWork{}) + (has_gradient ? gradient : KernelWork{});
-}
-
 inline constexpr KernelWork kLikelihoodOfCostsWork = cell_work(1 + kMeasurementOperations);
 inline constexpr KernelWork kLikelihoodOfEnergiesWork = cell_work(1 + kExp2Operations);
 /// Starts with the column's minimum.

@@ -29,26 +29,19 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"match-exposure", "estimated|none",
                "Match the brightness of the right image to that of the left one before comparing, "
                "by a gain and an offset estimated from each pair"},
-    OptionText{
-        "sigma-measurement", "S|estimated",
-        "With cost contaminated or combined, aggregation bayes or certainty entropy: "
-        "standard deviation of the noise, above 0, in the unit of the cost (grey levels; "
-        "with census costs, differing neighbours); estimated: from each pair",
-        "{}; estimated for cost combined; with cost gradient and certainty entropy a quarter "
-        "of the gradient filter's response to a slope of one grey level per pixel"},
+    OptionText{"sigma-measurement", "S|estimated",
+               "With cost contaminated, aggregation bayes or certainty entropy: "
+               "standard deviation of the noise, above 0, in the unit of the cost (grey levels; "
+               "with census costs, differing neighbours); estimated: from each pair",
+               "{}; with cost gradient and certainty entropy a quarter "
+               "of the gradient filter's response to a slope of one grey level per pixel"},
     OptionText{"epsilon-measurement", "E",
-               "With cost contaminated or combined or aggregation bayes: share of outliers, above "
+               "With cost contaminated or aggregation bayes: share of outliers, above "
                "0 and below 1"},
     OptionText{"census-thresholds", "N",
                "With cost census-rays: number of thresholds that each neighbour is compared with: "
                "1 (the centre pixel) or 3 (also 1.25 grey levels below and above: slower, better "
                "where texture is as weak as noise)"},
-    OptionText{"sigma-census", "S",
-               "With cost combined: standard deviation of the share of differing census bits, up "
-               "to 1; 0: no census term"},
-    OptionText{"sigma-gradient", "S",
-               "With cost combined: standard deviation of the gradients' noise in grey levels per "
-               "pixel; 0: no gradient term"},
     OptionText{"alpha", "A",
                "With cost gradient: weight of the difference of the gradients, at least 0"},
     OptionText{"gradient-components", "",

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "kernels/census/census.h"
-#include "kernels/combined_cost/combined_cost.h"
 #include "kernels/evidence/evidence.h"
 #include "kernels/gradient/gradient.h"
 #include "kernels/partner_choice/partner_choice.h"
@@ -52,14 +51,6 @@ struct RayCodes : Pairs<std::uint8_t, kernels::kMaxRayCensusBytes> {
   AlignedValues<std::uint8_t> bytes{kCellCount};
   kernels::LikelihoodByDistance likelihoods;
   kernels::ByteByDistance energies;
-};
-
-/// All terms of the combined cost.
-struct Combined {
-  Pairs<std::uint16_t, 3> levels;
-  Codes codes;
-  Pairs<std::uint16_t, 2> gradients;
-  kernels::CombinedRow row{levels.row, codes.row, gradients.row};
 };
 
 struct Cells {
@@ -132,10 +123,6 @@ void likelihood_of_evidence(Cells& data) {
 
 KernelBenchmarks cost_kernels() {
   const auto model = kernels::ContaminatedGaussian::of(5, 0.01);
-  using kernels::CombinedCells;
-  const kernels::CombinedSigmas sigmas{.grey_levels = 5, .census_share = 0.2};
-  const auto energies = kernels::combined_model(sigmas, 0.1, 1, CombinedCells::kEnergy);
-  const auto likelihoods = kernels::combined_model(sigmas, 0.1, 1, CombinedCells::kLikelihood);
   const auto cells = [](std::string name, const kernels::KernelWork& work, auto call) {
     return on_own_data<Cells>(std::move(name), "cell", kCells, per_cell(work, kLanes), call);
   };
@@ -200,18 +187,6 @@ KernelBenchmarks cost_kernels() {
                                   kernels::ray_census_energy_row(d.pairs, d.energies,
                                                                  d.bytes.data());
                                 }),
-      on_own_data<Combined>("combined_row/energy", "cell", kCells,
-                            per_cell(kernels::combined_work(1, true, false), kLanes),
-                            [energies](Combined& d) {
-                              kernels::combined_row(d.row, energies, CombinedCells::kEnergy,
-                                                    d.codes.cells.data());
-                            }),
-      on_own_data<Combined>("combined_row/likelihood", "cell", kCells,
-                            per_cell(kernels::combined_work(1, true, false), kLanes),
-                            [likelihoods](Combined& d) {
-                              kernels::combined_row(d.row, likelihoods, CombinedCells::kLikelihood,
-                                                    d.codes.cells.data());
-                            }),
       cells("likelihood_of_costs", kernels::kLikelihoodOfCostsWork,
             [model](Cells& d) { kernels::likelihood_of_costs(d.row, model, d.cells.data()); }),
       cells("likelihood_of_energies", kernels::kLikelihoodOfEnergiesWork,

@@ -65,8 +65,6 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--sigma-measurement", "loud"}, "--sigma-measurement is 'loud', expected a number"},
       {{"--method", "bayes", "--cost", "census", "--sigma-measurement", "estimated"},
        "sigma-measurement is estimated, which gives grey levels"},
-      {{"--sigma-census", "1.5"}, "sigma-census is 1.5, expected a share of bits"},
-      {{"--sigma-gradient", "-1"}, "sigma-gradient is -1, expected a number of grey levels"},
       {{"--cross-check-level", "-1"}, "cross-check-level is -1, expected a level from 0 to 9"},
       {{"--method", "ssd", "--cross-check-level", "1"},
        "cross-check-level is 1, expected 0: only aggregation bayes with levels"},
@@ -265,8 +263,8 @@ TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {
 
 TEST_F(MatchCommandOptions, ReportShowsWhatWasEstimated) {
   succeeds(match(folder_ / "map.pfm",
-                 {"--method", "bayes", "--cost", "combined", "--match-exposure", "estimated",
-                  "--sigma-measurement", "estimated", "--report", folder_ / "r.json"}));
+                 {"--method", "bayes", "--match-exposure", "estimated", "--sigma-measurement",
+                  "estimated", "--report", folder_ / "r.json"}));
   const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["settings"]["sigma-measurement"], "estimated");
   EXPECT_EQ(report["settings"]["resolved"]["match-exposure"], "estimated");
@@ -413,8 +411,8 @@ TEST_F(MatchCommandOptions, SeveralImagesOfOneCameraAgreeWithThePair) {
 
 TEST_F(MatchCommandOptions, SeveralImagesWorkWithEveryCostAndPreset) {
   for (const std::string& choice :
-       words("--preset=realtime --preset=fast --preset=balanced --preset=quality --cost=gradient "
-             "--cost=combined")) {
+       words("--preset=realtime --preset=fast --preset=balanced --preset=quality "
+             "--cost=gradient")) {
     succeeds(match(folder_ / "several.pfm",
                    {left_, "--baselines=1,-2.37", choice, "--candidate-step", "0.5"}));
   }

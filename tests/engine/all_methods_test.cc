@@ -19,8 +19,7 @@ using test::PixelKind;
 using test::textured_pair;
 using test::tolerance_of;
 
-/// Costs that differ from the oracle's by rounding only.
-const std::vector<MatchCost> kCosts = test::all_costs_but(MatchCost::kCombined);
+const std::vector<MatchCost> kCosts = test::all_costs();
 const std::vector<Aggregation> kAggregations = test::all_aggregations();
 
 /// Images that a method is looked at with.

@@ -15,13 +15,12 @@ struct MethodCase {
 };
 
 /// Whether cells are rounded to steps on the way, so that they stay within other bounds of the
-/// plain transcription than floats: combined costs (stage_cost_test), stored levels and energies in
-/// fixed point (coarse_to_fine_test).
+/// plain transcription than floats: stored levels and energies in fixed point
+/// (coarse_to_fine_test).
 inline bool is_stepped(const MethodCase& method) {
   const MethodParameters parameters = method.options.resolved();
-  return parameters.cost == MatchCost::kCombined || parameters.levels > 1 ||
-         (parameters.prior_smoothing == PriorSmoothing::kMaximum &&
-          parameters.prior != Prior::kQuadratic);
+  return parameters.levels > 1 || (parameters.prior_smoothing == PriorSmoothing::kMaximum &&
+                                   parameters.prior != Prior::kQuadratic);
 }
 
 /// What test runners print of a case instead of its bytes.
@@ -90,14 +89,6 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
     p.iterations = 3;
     p.final_iterations = 2;
     p.edge_weight = 0.2;
-  });
-  add("bayes_combined", MatchMethod::kBayes, [](MethodOverrides& p) {
-    p.cost = MatchCost::kCombined;
-    p.sigma_gradient = 4;
-  });
-  add("combined_box", MatchMethod::kSsd, [](MethodOverrides& p) {
-    p.cost = MatchCost::kCombined;
-    p.colour = ColourUse::kChannels;
   });
   add("bayes_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
     p.levels = 4;

@@ -110,21 +110,6 @@ TEST(MethodParameters, CostFollowsTheAggregationUnlessItIsSet) {
   EXPECT_EQ(options.resolved().cost, MatchCost::kGradient);
 }
 
-TEST(MethodParameters, NoiseOfCombinedCostsIsEstimatedUnlessItIsSet) {
-  MatchOptions options;
-  options.method = MatchMethod::kBayes;
-  EXPECT_FALSE(options.resolved().estimate_sigma_measurement);
-  options.parameters.cost = MatchCost::kCombined;
-  EXPECT_TRUE(options.resolved().estimate_sigma_measurement);
-  EXPECT_TRUE(options.fully_resolved().resolved().estimate_sigma_measurement);
-  options.parameters.sigma_measurement = 7;
-  EXPECT_FALSE(options.resolved().estimate_sigma_measurement);
-  EXPECT_EQ(options.resolved().sigma_measurement, 7);
-  options.parameters.sigma_measurement.reset();
-  options.parameters.estimate_sigma_measurement = false;
-  EXPECT_FALSE(options.resolved().estimate_sigma_measurement);
-}
-
 TEST(MethodParameters, APresetsNoiseIsOfItsOwnCost) {
   const double of_the_book = book_parameters(MatchMethod::kBayes).sigma_measurement;
   MatchOptions options;
@@ -133,8 +118,6 @@ TEST(MethodParameters, APresetsNoiseIsOfItsOwnCost) {
   EXPECT_NE(options.resolved().sigma_measurement, of_the_book);
   options.parameters.cost = MatchCost::kContaminated;
   EXPECT_EQ(options.resolved().sigma_measurement, of_the_book);
-  options.parameters.cost = MatchCost::kCombined;
-  EXPECT_TRUE(options.resolved().estimate_sigma_measurement);
 }
 
 TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
@@ -436,20 +419,6 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
        {0, 1, kNan},
        "between 0 and 1",
        MatchMethod::kBayes},
-      {"sigma-census",
-       parameter(&P::sigma_census),
-       {0, .01, 1},
-       {-.1, 1.01, kNan},
-       "a share of bits",
-       MatchMethod::kSsd,
-       costs_by<MatchCost::kCombined>},
-      {"sigma-gradient",
-       parameter(&P::sigma_gradient),
-       {0, .1, 99},
-       {-.1, kNan, kInfinity},
-       "grey levels per pixel",
-       MatchMethod::kSsd,
-       costs_by<MatchCost::kCombined>},
       {"truncation",
        parameter(&P::truncation),
        {0.1, 255},
@@ -580,7 +549,7 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
     options.method = MatchMethod::kBayes;
     EXPECT_THAT(complaint(options), HasSubstr("expected a number"));
   }
-  options.parameters.cost = MatchCost::kCombined;
+  options.parameters.cost = MatchCost::kContaminated;
   EXPECT_EQ(complaint(options), "");
 }
 

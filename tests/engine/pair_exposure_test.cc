@@ -241,19 +241,16 @@ double share_of_right(const DisparityMap& map, const Scene& scene) {
 TEST(PairExposure, MatchersSeeThroughExposure) {
   Execution execution({.threads = 2});
   const Scene scene = make_scene(200, {{.6, 12}, 2, 1});
-  for (const MatchCost cost : {MatchCost::kSquared, MatchCost::kAbsolute, MatchCost::kCombined}) {
+  for (const MatchCost cost :
+       {MatchCost::kSquared, MatchCost::kAbsolute, MatchCost::kContaminated}) {
     MatchOptions options = exposure_options(Side::kLeft, cost);
-    if (cost == MatchCost::kCombined) {
-      options.parameters.sigma_census = 0;
-      options.parameters.estimate_sigma_measurement = false;
-    }
     DisparityMaps maps;
     MatchReport report;
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
     EXPECT_FALSE(report.exposure);
     const double without = share_of_right(maps.left.disparity_px, scene);
     options.parameters.match_exposure = true;
-    if (cost == MatchCost::kCombined) {
+    if (cost == MatchCost::kContaminated) {
       options.parameters.estimate_sigma_measurement = true;
     }
     StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);

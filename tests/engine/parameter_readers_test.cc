@@ -155,8 +155,6 @@ const std::map<std::string_view, Changes>& changes() {
       {"sigma-measurement", values_of<double>(&P::sigma_measurement, {2, 14})},
       {"epsilon-measurement", values_of<double>(&P::epsilon_measurement, {0.01, 0.4})},
       {"census-thresholds", values_of<int>(&P::census_thresholds, {3})},
-      {"sigma-census", values_of<double>(&P::sigma_census, {0, 0.05})},
-      {"sigma-gradient", values_of<double>(&P::sigma_gradient, {3})},
       {"alpha", values_of<double>(&P::alpha, {0.3})},
       {"gradient-components",
        values_of<GradientComponents>(&P::gradient_components, {GradientComponents::kX})},
@@ -339,10 +337,9 @@ TEST(ParameterReaders, AreNamedFromTheTables) {
   EXPECT_EQ(names["match-exposure"],
             "every cost but census and census-rays, whose codes no exposure changes");
   EXPECT_EQ(names["sigma-measurement"],
-            "the costs contaminated and combined, the aggregation bayes, and local-stopping with "
+            "the cost contaminated, the aggregation bayes, and local-stopping with "
             "certainty entropy");
-  EXPECT_EQ(names["epsilon-measurement"],
-            "the costs contaminated and combined, and the aggregation bayes");
+  EXPECT_EQ(names["epsilon-measurement"], "the cost contaminated, and the aggregation bayes");
   EXPECT_EQ(names["aggregation-sigma"],
             "the aggregations gaussian and box-cascade (method gradient)");
   EXPECT_EQ(names["final-iterations"],

@@ -30,7 +30,6 @@ class PlainCostCells {
         geometry_(geometry),
         meaning_(meaning),
         reference_(channels_of(reference, parameters.colour)),
-        reference_luma_(channels_of(reference, ColourUse::kLuma).front()),
         partners_(partners) {
     for (const PlainPartner& partner : partners) {
       Samples samples;
@@ -38,8 +37,6 @@ class PlainCostCells {
       for (int k = 0; k < samples.count; ++k) {
         const double fraction = static_cast<double>(k) / samples.count;
         samples.channels.push_back(channels_of(*partner.photograph, parameters.colour, fraction));
-        samples.luma.push_back(
-            channels_of(*partner.photograph, ColourUse::kLuma, fraction).front());
       }
       samples_.push_back(samples);
     }
@@ -101,7 +98,6 @@ class PlainCostCells {
   struct Samples {
     int count = 1;
     std::vector<std::vector<Channel>> channels;
-    std::vector<Channel> luma;
   };
 
   [[nodiscard]] std::vector<Channel> channels_of(const Photograph& photograph, ColourUse colour,
@@ -153,10 +149,7 @@ class PlainCostCells {
     }
     for (std::size_t i = 0; i < energies.size(); ++i) {
       double& cell = energies[i];
-      if (parameters_.cost == MatchCost::kCombined) {
-        cell = is_inside[i] ? cell : combined_energy_without_partner(parameters_);
-        cell = is_energy ? cell : std::exp(-cell);
-      } else if (!is_inside[i]) {
+      if (!is_inside[i]) {
         cell = !is_energy                                     ? epsilon
                : parameters_.cost == MatchCost::kGradient     ? 0
                : parameters_.cost == MatchCost::kContaminated ? -std::log(epsilon)
@@ -193,19 +186,7 @@ class PlainCostCells {
       sum += cost(reference_[std::min(c, reference_.size() - 1)], x, y,
                   partner[std::min(c, partner.size() - 1)], whole, partner_y);
     }
-    const double mean = sum / static_cast<double>(channels);
-    if (parameters_.cost != MatchCost::kCombined) {
-      return mean;
-    }
-    const Plane& a = reference_luma_.level;
-    const Plane& b = samples_[p].luma[phase].level;
-    const double dx = (a.at(x + 1, y) - a.at(x - 1, y)) / 2 -
-                      (b.at(whole + 1, partner_y) - b.at(whole - 1, partner_y)) / 2;
-    const double dy = (a.at(x, y + 1) - a.at(x, y - 1)) / 2 -
-                      (b.at(whole, partner_y + 1) - b.at(whole, partner_y - 1)) / 2;
-    return combined_energy(
-        {mean, hamming(a, x, y, b, whole, partner_y) / 62, std::abs(dx) + std::abs(dy)},
-        parameters_);
+    return sum / static_cast<double>(channels);
   }
 
   /// Of windows of 9×7.
@@ -263,7 +244,6 @@ class PlainCostCells {
       case MatchCost::kContaminated:
         return -std::log(measurement(difference * difference));
       case MatchCost::kBirchfieldTomasi:
-      case MatchCost::kCombined:
         return std::min(distance(a.level.at(x, y), b.level, whole, partner_y),
                         distance(level, a.level, x, y));
       case MatchCost::kGradient: {
@@ -305,7 +285,6 @@ class PlainCostCells {
   kernels::CandidateGeometry geometry_;
   CellMeaning meaning_;
   std::vector<Channel> reference_;
-  Channel reference_luma_;
   std::vector<PlainPartner> partners_;
   std::vector<Samples> samples_;
 };

@@ -143,34 +143,9 @@ double contaminated(double squared_difference, const MethodParameters& parameter
   return -std::log((1 - epsilon) * std::exp(-squared_difference / (2 * sigma * sigma)) + epsilon);
 }
 
-/// |Δgx| + |Δgy| of central differences.
-double gradient_difference(const Channel& channel, int x, int partner, int y) {
-  const auto gradient = [&](const Plane& plane, int column, int dx, int dy) {
-    return (plane.at(column + dx, y + dy) - plane.at(column - dx, y - dy)) / 2;
-  };
-  double sum = 0;
-  for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
-    sum +=
-        std::abs(gradient(channel.reference, x, dx, dy) - gradient(channel.other, partner, dx, dy));
-  }
-  return sum;
-}
-
 double sampling_insensitive(const Channel& channel, int x, int partner, int y) {
   return std::min(distance_to_interval(channel.reference.at(x, y), channel.other, partner, y),
                   distance_to_interval(channel.other.at(partner, y), channel.reference, x, y));
-}
-
-double combined_cost(const std::vector<Channel>& channels, const Channel& luma, int x, int partner,
-                     int y, const MethodParameters& parameters) {
-  CombinedResiduals residuals;
-  for (const Channel& channel : channels) {
-    residuals.grey_levels += sampling_insensitive(channel, x, partner, y);
-  }
-  residuals.grey_levels /= static_cast<double>(channels.size());
-  residuals.census_share = census_distance(luma, x, partner, y, {.columns = 4, .rows = 3}) / 62;
-  residuals.gradient_levels_px = gradient_difference(luma, x, partner, y);
-  return combined_energy(residuals, parameters);
 }
 
 double cost_of_channel(const Channel& channel, int x, int partner, int y,
@@ -193,8 +168,6 @@ double cost_of_channel(const Channel& channel, int x, int partner, int y,
       return census_distance(channel, x, partner, y, {.columns = 4, .rows = 3});
     case MatchCost::kRayCensus:
       return ray_census_distance(channel, x, partner, y, parameters.census_thresholds);
-    case MatchCost::kCombined:
-      break;  // no mean over channels
   }
   return std::numeric_limits<double>::quiet_NaN();
 }
@@ -311,27 +284,6 @@ Gradient gradient_of(const Plane& plane, GradientFilter filter, bool prefilter) 
   return {correlate(smooth, derivative, across), correlate(smooth, across, derivative)};
 }
 
-double combined_energy(const CombinedResiduals& residuals, const MethodParameters& parameters) {
-  const double epsilon = parameters.epsilon_measurement;
-  const auto term = [&](double residual, double sigma) {
-    return -std::log((1 - epsilon) * std::exp(-residual * residual / (2 * sigma * sigma)) +
-                     epsilon);
-  };
-  double energy = term(residuals.grey_levels, parameters.sigma_measurement);
-  if (parameters.sigma_census > 0) {
-    energy += term(residuals.census_share, parameters.sigma_census);
-  }
-  if (parameters.sigma_gradient > 0) {
-    energy += term(residuals.gradient_levels_px, parameters.sigma_gradient);
-  }
-  return energy;
-}
-
-double combined_energy_without_partner(const MethodParameters& parameters) {
-  constexpr double kFar = 1e9;
-  return combined_energy({kFar, kFar, kFar}, parameters) / 2;
-}
-
 double length_of(double x, double y, const MethodParameters& parameters) {
   if (parameters.gradient_components == GradientComponents::kX) {
     return std::abs(x);
@@ -358,7 +310,6 @@ Volume plain_costs(const Photograph& reference, const Photograph& other, Side re
   const int steps = static_cast<int>(std::lround(1 / parameters.candidate_step_px));
   // The other image at every fraction of a pixel.
   std::vector<std::vector<Channel>> phases;
-  std::vector<Channel> lumas;
   for (int phase = 0; phase < steps; ++phase) {
     const double fraction = static_cast<double>(phase) / steps;
     std::vector<Channel> channels;
@@ -372,10 +323,6 @@ Volume plain_costs(const Photograph& reference, const Photograph& other, Side re
       }
     }
     phases.push_back(channels);
-    lumas.push_back({planes_of(reference, ColourUse::kLuma).front(),
-                     resampled(planes_of(other, ColourUse::kLuma).front(), fraction),
-                     {},
-                     {}});
   }
   Volume costs(reference.width(), reference.height(), range, reference_is, 0, steps);
   for_each_cell(costs, [&](int x, int y, int i) {
@@ -388,18 +335,10 @@ Volume plain_costs(const Photograph& reference, const Photograph& other, Side re
         cell = -std::log(parameters.epsilon_measurement);
         return;
       }
-      if (parameters.cost == MatchCost::kCombined) {
-        cell = combined_energy_without_partner(parameters);
-        return;
-      }
     }
     const double position = std::clamp(costs.partner(x, i), 0., costs.width - 1.);
     const int partner = static_cast<int>(std::floor(position));
     const auto phase = static_cast<std::size_t>(std::lround((position - partner) * steps));
-    if (parameters.cost == MatchCost::kCombined) {
-      cell = combined_cost(phases[phase], lumas[phase], x, partner, y, parameters);
-      return;
-    }
     for (const Channel& channel : phases[phase]) {
       cell += cost_of_channel(channel, x, partner, y, parameters);
     }
@@ -423,9 +362,6 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
       }
       for (int i = 0; i < energies.count(); ++i) {
         double& cell = energies.at(x, y, i);
-        if (parameters.cost == MatchCost::kCombined) {
-          continue;  // logarithms already
-        }
         if (!energies.has_partner(x, i)) {
           cell = -std::log(epsilon);
         } else if (parameters.cost == MatchCost::kGradient) {

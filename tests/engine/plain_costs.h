@@ -88,20 +88,8 @@ Gradient gradient_of(const Plane& plane, GradientFilter filter, bool prefilter);
 /// |v| by the norm and the components of `parameters` (5.7, 5.8).
 double length_of(double x, double y, const MethodParameters& parameters);
 
-/// Residuals of the combined cost's terms.
-struct CombinedResiduals {
-  double grey_levels = 0;
-  double census_share = 0;
-  double gradient_levels_px = 0;
-};
-/// Σ −log of the contaminated Gaussians of the terms that have a σ.
-double combined_energy(const CombinedResiduals& residuals, const MethodParameters& parameters);
-/// Half of the most it can be: of cells without partner.
-double combined_energy_without_partner(const MethodParameters& parameters);
-
 /// E0 of (6.1) with the cost `parameters.cost`; at cells whose partner is outside the cost of the
-/// clamped coordinate, 0 for evidence, −log ε for the contaminated Gaussian, half of the most for
-/// the combined cost.
+/// clamped coordinate, 0 for evidence, −log ε for the contaminated Gaussian.
 Volume plain_costs(const Photograph& reference, const Photograph& other, Side reference_is,
                    DisparityRange range, const MethodParameters& parameters);
 

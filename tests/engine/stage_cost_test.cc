@@ -26,8 +26,7 @@ using kernels::CandidateGeometry;
 using test::PlainCostCells;
 using test::PlainPartner;
 
-/// Cells of the combined cost have a test of their own.
-const std::vector<MatchCost> kCosts = test::all_costs_but(MatchCost::kCombined);
+const std::vector<MatchCost> kCosts = test::all_costs();
 constexpr CellMeaning kMeanings[] = {CellMeaning::kEnergy, CellMeaning::kLikelihood};
 
 enum class Kind { kGrey8, kGrey16, kGreyFloat, kColour8, kAlphaFloat };
@@ -178,10 +177,6 @@ class StageCost : public ::testing::Test {
   /// Largest error of a float cell: grey levels are exact to 5e-5.
   static double bound(const CostCase& test, double value) {
     const auto partners = static_cast<double>(test.others.size());
-    if (test.parameters.cost == MatchCost::kCombined) {
-      // Residuals are counted in steps of up to 0.1 σ, each of two or three terms.
-      return test.meaning == CellMeaning::kEnergy ? 0.3 * partners : 0.3 * value + 1e-5;
-    }
     if (test.meaning == CellMeaning::kLikelihood) {
       return 3e-5;
     }
@@ -283,41 +278,6 @@ TEST_F(StageCost, EqualsPlainCellsForAllGradients) {
           ASSERT_FALSE(HasFatalFailure());
         }
       }
-    }
-  }
-}
-
-TEST_F(StageCost, EqualsPlainCellsForAllTermsOfTheCombinedCost) {
-  CostCase test = pair_case(Kind::kColour8, {23, 9, -3, 14}, -1);
-  test.parameters.cost = MatchCost::kCombined;
-  for (const ColourUse colour : {ColourUse::kLuma, ColourUse::kChannels}) {
-    for (const double sigma_census : {0., .1, 1.}) {
-      for (const double sigma_gradient : {0., 2., 30.}) {
-        for (const CellMeaning meaning : kMeanings) {
-          test.parameters.colour = colour;
-          test.parameters.sigma_census = sigma_census;
-          test.parameters.sigma_gradient = sigma_gradient;
-          test.meaning = meaning;
-          SCOPED_TRACE(describe(test) + ", sigmas " + std::to_string(sigma_census) + ", " +
-                       std::to_string(sigma_gradient));
-          expect_plain_cells(test);
-          ASSERT_FALSE(HasFatalFailure());
-        }
-      }
-    }
-  }
-}
-
-TEST_F(StageCost, LikelihoodsOfTheCombinedCostAreThoseOfItsEnergies) {
-  CostCase test = pair_case(Kind::kColour8, {40, 9, -3, 37}, -1);
-  test.parameters.cost = MatchCost::kCombined;
-  test.parameters.sigma_gradient = 4;
-  const Cells energies = cells_of(test);
-  test.meaning = CellMeaning::kLikelihood;
-  const Cells likelihoods = cells_of(test);
-  for (std::size_t k = 0; k < energies.values.size(); ++k) {
-    if (static_cast<int>(k % energies.lanes) < test.geometry.count) {
-      ASSERT_NEAR(-std::log(likelihoods.values[k]), energies.values[k], 0.015);
     }
   }
 }

@@ -22,9 +22,6 @@ auto keys_in(const Table& table, const Holds& holds) {
 inline std::vector<MatchCost> all_costs() {
   return keys_in(cost_table(), [](const MatchingCost&) { return true; });
 }
-inline std::vector<MatchCost> all_costs_but(MatchCost left_out) {
-  return keys_in(cost_table(), [=](const MatchingCost& cost) { return cost.key != left_out; });
-}
 inline std::vector<Aggregation> all_aggregations() {
   return keys_in(aggregation_table(), [](const CellAggregation&) { return true; });
 }

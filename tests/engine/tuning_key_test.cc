@@ -141,8 +141,6 @@ TEST_F(TuningKeyTest, HasEveryFieldThatChangesTheWork) {
   const std::set<std::string_view> same_work = {"truncation",
                                                 "sigma-measurement",
                                                 "epsilon-measurement",
-                                                "sigma-census",
-                                                "sigma-gradient",
                                                 "alpha",
                                                 "gradient-components",
                                                 "norm",

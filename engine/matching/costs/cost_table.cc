@@ -10,7 +10,6 @@ std::span<const MatchingCost> cost_table() {
   static const std::array table = {
       squared_cost(),  absolute_cost(),     truncated_cost(), birchfield_tomasi_cost(),
       gradient_cost(), contaminated_cost(), census_cost(),    ray_census_cost(),
-      combined_cost(),
   };
   return table;
 }

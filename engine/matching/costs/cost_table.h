@@ -42,6 +42,5 @@ MatchingCost gradient_cost();
 MatchingCost contaminated_cost();
 MatchingCost census_cost();
 MatchingCost ray_census_cost();
-MatchingCost combined_cost();
 
 }  // namespace vantage

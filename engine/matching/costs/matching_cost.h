@@ -103,8 +103,6 @@ struct MatchingCost {
   /// Energies are −evidence: of either sign, compared with 0, without a scale of their own;
   /// likelihoods compare each candidate with the best one.
   bool is_evidence = false;
-  /// σM is estimated from each pair unless set.
-  bool estimates_sigma = false;
   /// Box sums of luma have their own stage (stage_column_ssd).
   bool has_column_sums = false;
   /// Maximum contrast of a column of energies that a disparity prior uses as scale.

@@ -56,15 +56,6 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
               readers::kCosts,
               {[](double v) { return v == 1 || v == 3; }, "1 or 3"}},
         options.census_thresholds...);
-  visit(Field{"sigma-census",
-              readers::kCosts,
-              {is_within<0, 1>, "a share of bits from 0, which leaves the term out, to 1"}},
-        options.sigma_census...);
-  visit(Field{"sigma-gradient",
-              readers::kCosts,
-              {is_not_negative,
-               "a number of grey levels per pixel, at least 0, which leaves the term out"}},
-        options.sigma_gradient...);
   visit(Field{"alpha", readers::kGradient, kNotNegative}, options.alpha...);
   visit(Field{"gradient-components", readers::kGradient}, options.gradient_components...);
   visit(Field{"norm", readers::kGradientNorm}, options.norm...);

@@ -200,9 +200,6 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
   if (!overrides.final_iterations) {
     result.final_iterations = result.iterations;
   }
-  if (!overrides.sigma_measurement && !overrides.estimate_sigma_measurement) {
-    result.estimate_sigma_measurement = cost_of(result).estimates_sigma;
-  }
   if (!overrides.sigma_measurement && result.aggregation == Aggregation::kLocalStopping &&
       is_evidence(result)) {
     result.sigma_measurement = kEvidenceSigmaOfSlope * slope_response(result.gradient);

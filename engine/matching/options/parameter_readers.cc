@@ -23,7 +23,7 @@ std::vector<std::string_view> names_in(const Table& table, std::string_view opti
   return names;
 }
 
-/// "cost census", "costs census and combined".
+/// "cost census", "costs census and gradient".
 std::string counted(std::string_view noun, const std::vector<std::string_view>& names) {
   return fmt::format("{}{} {}", noun, names.size() == 1 ? "" : "s", word_list(names, "and"));
 }

@@ -22,7 +22,6 @@ enum class MatchCost {
   kContaminated,  ///< −log[(1−ε) exp(−ΔI²/2σ²) + ε], contaminated Gaussian (6.26 ff.)
   kCensus,        ///< Hamming distance of 9×7 census codes
   kRayCensus,     ///< Hamming distance of codes with 24 neighbours in 8 directions, denser inside
-  kCombined,      ///< Σ −log of contaminated Gaussians: intensities, census, gradients
 };
 /// How cells gather support from their neighbours.
 enum class Aggregation {
@@ -89,23 +88,18 @@ struct MethodParametersOf {
   Field<ColourUse> colour = by_default<Field>(ColourUse::kLuma);
   /// Truncated cost: grey levels, > 0.
   Field<double> truncation = by_default<Field>(20.0);
-  /// σM in the cost's unit (grey levels; census codes: differing neighbours), > 0: contaminated and
-  /// combined cost, Bayes, entropy.
+  /// σM in the cost's unit (grey levels; census codes: differing neighbours), > 0: contaminated
+  /// cost, Bayes, entropy.
   Field<double> sigma_measurement = by_default<Field>(5.0);
-  /// εM, inside (0, 1): contaminated and combined cost, Bayes.
+  /// εM, inside (0, 1): contaminated cost, Bayes.
   Field<double> epsilon_measurement = by_default<Field>(0.1);
-  /// σM is estimated from each pair (pair_exposure), with sigma_measurement as fallback. Default of
-  /// the combined cost unless either is set.
+  /// σM is estimated from each pair (pair_exposure), with sigma_measurement as fallback.
   Field<bool> estimate_sigma_measurement = by_default<Field>(false);
   /// The right image's intensities are matched to the left's before they are compared, with gain
   /// and offset estimated from each pair (pair_exposure).
   Field<bool> match_exposure = by_default<Field>(false);
   /// Ray census: number of thresholds a neighbour is compared with, 1 or 3.
   Field<int> census_thresholds = by_default<Field>(1);
-  /// Combined cost: σ of the fraction of differing census bits, 0..1; 0: no term.
-  Field<double> sigma_census = by_default<Field>(0.2);
-  /// Combined cost: σ of gradients in grey levels per pixel, ≥ 0; 0: no term.
-  Field<double> sigma_gradient = by_default<Field>(0.0);
   /// Gradient evidence: weight of the gradients' difference, ≥ 0.
   Field<double> alpha = by_default<Field>(1.0);
   Field<GradientComponents> gradient_components = by_default<Field>(GradientComponents::kXy);
