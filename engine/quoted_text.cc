@@ -15,24 +15,11 @@ bool is_continuation(char byte) { return (static_cast<unsigned char>(byte) & 0xC
 /// invalid UTF-8.
 std::size_t visible_bytes(std::string_view text) {
   const auto first = static_cast<unsigned char>(text[0]);
-  if (first < 0x80) {
-    return first < 0x20 || first == 0x7F ? 0 : 1;
-  }
-  const std::size_t count = first >= 0xC2 && first <= 0xDF   ? 2
-                            : first >= 0xE0 && first <= 0xEF ? 3
-                            : first >= 0xF0 && first <= 0xF4 ? 4
-                                                             : 0;
-  if (count == 0 || text.size() < count ||
-      !std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(count),
-                   is_continuation)) {
-    return 0;
-  }
-  const auto second = static_cast<unsigned char>(text[1]);
-  const bool is_control = first == 0xC2 && second < 0xA0;
-  const bool is_overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool is_no_character =
-      (first == 0xED && second >= 0xA0) || (first == 0xF4 && second > 0x8F);
-  return is_control || is_overlong || is_no_character ? 0 : count;
+  const std::size_t count = utf8_bytes(text);
+  const bool is_control =
+      first < 0x20 || first == 0x7F ||
+      (first == 0xC2 && count == 2 && static_cast<unsigned char>(text[1]) < 0xA0);
+  return is_control ? 0 : count;
 }
 
 std::string escaped(char byte) {
@@ -49,6 +36,24 @@ std::string escaped(char byte) {
 }
 
 }  // namespace
+
+std::size_t utf8_bytes(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text[0]);
+  if (first < 0x80) {
+    return 1;
+  }
+  const std::size_t count = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC2 || first > 0xF4 || text.size() < count ||
+      !std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(count),
+                   is_continuation)) {
+    return 0;
+  }
+  const auto second = static_cast<unsigned char>(text[1]);
+  const bool is_overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
+  const bool is_no_character =
+      (first == 0xED && second >= 0xA0) || (first == 0xF4 && second > 0x8F);
+  return is_overlong || is_no_character ? 0 : count;
+}
 
 std::string printable(std::string_view text) {
   std::string result;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -12,5 +13,8 @@ std::string printable(std::string_view text);
 /// A foreign value as quoted in messages: printable; long values are shortened to their start and
 /// their length.
 std::string quotable(std::string_view text);
+
+/// Bytes of the UTF-8 character at the start of `text`, which is not empty; 0: invalid.
+std::size_t utf8_bytes(std::string_view text);
 
 }  // namespace vantage

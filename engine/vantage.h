@@ -13,9 +13,8 @@
 #include "engine/image/pixel_buffer.h"
 #include "engine/io/images/opencv_setup.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
-#include "engine/io/maps/displacement_io.h"
 #include "engine/io/maps/map_formats.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/io/maps/npy_volume_file.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/video_io.h"
@@ -42,7 +41,6 @@
 #include "engine/rectification/vertical_error.h"
 
 // Depths, point clouds and surfaces of maps, and their files.
-#include "engine/io/maps/depth_io.h"
 #include "engine/reprojection/map_camera.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/reprojection/point_cloud.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/refinement/refinement.h"

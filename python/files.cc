@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/io/images/preview.h"
-#include "engine/io/maps/depth_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"

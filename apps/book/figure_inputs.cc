@@ -4,7 +4,7 @@
 
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/options/match_settings.h"
 

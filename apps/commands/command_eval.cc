@@ -15,7 +15,7 @@
 #include "engine/evaluation/disparity_evaluation.h"
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/options/settings.h"
 
 namespace vantage::apps {

@@ -16,7 +16,7 @@
 #include "engine/error.h"
 #include "engine/image/eight_bit.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/metric_settings.h"

@@ -12,7 +12,7 @@
 
 #include "engine/data_limit.h"
 #include "engine/error.h"
-#include "engine/io/files/image_size_limit.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/matching/levels/level_bands.h"
 #include "engine/out_of_memory.h"
 

@@ -11,7 +11,7 @@
 #include "apps/inputs/rectification_check.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/rectification/stereo_calibration.h"

@@ -8,7 +8,7 @@
 #include "apps/process/outputs.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/sequence/sequence_layout.h"
 
 namespace vantage::apps {

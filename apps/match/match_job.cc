@@ -9,8 +9,8 @@
 #include "apps/inputs/rectification_check.h"
 #include "apps/process/outputs.h"
 #include "engine/error.h"
-#include "engine/io/maps/disparity_io.h"
 #include "engine/io/maps/map_formats.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/search/match_inputs.h"
 

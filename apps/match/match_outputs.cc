@@ -2,8 +2,7 @@
 
 #include "engine/image/transposed.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
-#include "engine/io/maps/displacement_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/sequence/preview_range.h"
 
 namespace vantage::apps {

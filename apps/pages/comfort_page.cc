@@ -9,7 +9,7 @@
 #include "apps/pages/embedded_files.h"
 #include "apps/pages/page_template.h"
 #include "engine/build_info.h"
-#include "engine/io/files/markup_text.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/plot/line_plot.h"
 
 namespace vantage::apps {

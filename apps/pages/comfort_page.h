@@ -5,7 +5,6 @@
 
 #include "engine/comfort/comfort_summary.h"
 #include "engine/io/video/frame_rate.h"
-#include "engine/io/video/frame_times.h"
 #include "engine/options/setting_value.h"
 
 namespace vantage::apps {

@@ -9,8 +9,7 @@
 #include "apps/pages/embedded_files.h"
 #include "apps/pages/page_template.h"
 #include "engine/build_info.h"
-#include "engine/io/files/base64.h"
-#include "engine/io/files/markup_text.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/options/parameter_settings.h"
 #include "engine/options/settings.h"
 

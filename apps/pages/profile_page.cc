@@ -2,7 +2,7 @@
 
 #include "apps/pages/embedded_files.h"
 #include "apps/pages/page_template.h"
-#include "engine/io/files/markup_text.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/profiling/profile_json.h"
 
 namespace vantage::apps {

@@ -11,7 +11,7 @@
 #include "apps/process/tell.h"
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
-#include "engine/io/files/file_lock.h"
+#include "engine/io/files/file_descriptor.h"
 #include "engine/io/files/temporary_name.h"
 #include "engine/sequence/depth_picture.h"
 #include "engine/sequence/journal_content.h"
@@ -49,7 +49,7 @@ SettingValue depth_values(const SequenceOptions& options, const ShotTable& table
                      {"min_px", double{range.min_px}},
                      {"max_px", double{range.max_px}}});
   }
-  const int bits = bits_of(options.depth_coding);
+  const int bits = traits_of(options.depth_coding).bits;
   const int white = (1 << bits) - 1;
   return {
       {"bits", bits},

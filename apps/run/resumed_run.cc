@@ -10,8 +10,8 @@
 
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/io/files/json_text.h"
-#include "engine/io/files/stored_name.h"
 #include "engine/options/match_settings.h"
 #include "engine/sequence/run_journal.h"
 #include "engine/sequence/sequence_layout.h"

@@ -15,7 +15,7 @@
 #include "apps/run/resumed_run.h"
 #include "apps/run/stream_run.h"
 #include "engine/error.h"
-#include "engine/io/files/file_identity.h"
+#include "engine/io/files/checksum.h"
 #include "engine/io/files/json_text.h"
 #include "engine/jobs/list_columns.h"
 #include "engine/matching/range_estimation.h"

@@ -151,8 +151,7 @@ std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::str
   if (fs::is_directory(poses)) {
     return images_of_colmap(poses, images, intrinsics);
   }
-  const std::vector<std::uint8_t> bytes = read_file_bytes(poses);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string text = read_file_text(poses);
   const std::vector<fs::path> files = files_of(images);
   const bool is_opencv = has_opencv_poses(text);
   if (!is_opencv && intrinsics.empty()) {

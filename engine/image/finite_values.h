@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <vector>
 
 #include "engine/image/image.h"
@@ -25,6 +26,17 @@ inline std::vector<float> finite_values(ImageView<const float> map) {
   values.reserve(static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height()));
   add_finite_values(map, values);
   return values;
+}
+
+/// The map with NaN for all values that are not finite.
+inline Image<float> with_nan(ImageView<const float> map) {
+  Image<float> result(map.width(), map.height());
+  for (int y = 0; y < map.height(); ++y) {
+    std::transform(map.row(y), map.row(y) + map.width(), result.row(y), [](float value) {
+      return std::isfinite(value) ? value : std::numeric_limits<float>::quiet_NaN();
+    });
+  }
+  return result;
 }
 
 }  // namespace vantage

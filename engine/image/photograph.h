@@ -23,6 +23,13 @@ struct Photograph {
   }
 };
 
+/// The pixels of `photograph` as values of T, of no size if they were of another type.
+template <typename T>
+Image<T>& pixels_of(Photograph& photograph) {
+  auto* same = std::get_if<Image<T>>(&photograph.pixels);
+  return same != nullptr ? *same : photograph.pixels.emplace<Image<T>>();
+}
+
 /// An image of that shape in the memory of `photograph`, reused if the type matches; contents are
 /// undefined. Do not use the photograph before it has pixels again.
 struct ImageShape {

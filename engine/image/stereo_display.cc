@@ -129,10 +129,7 @@ void show_stereo(const Photograph& left, const Photograph& right, const StereoDi
   require_equal_shapes(left, right);
   std::visit(
       [&]<typename T>(const Image<T>& left_image) {
-        if (!std::holds_alternative<Image<T>>(shown.pixels)) {
-          shown.pixels.template emplace<Image<T>>();
-        }
-        Image<T>& result = std::get<Image<T>>(shown.pixels);
+        Image<T>& result = pixels_of<T>(shown);
         const auto& right_image = std::get<Image<T>>(right.pixels);
         if (const auto* order = std::get_if<InterleavedStereo>(&display)) {
           interleave(left_image, right_image, *order, result);

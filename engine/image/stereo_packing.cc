@@ -12,15 +12,6 @@
 namespace vantage {
 namespace {
 
-/// Pixels of type T in `photograph`, whose type changes to T if it differs.
-template <typename T>
-Image<T>& pixels_of(Photograph& photograph) {
-  if (!std::holds_alternative<Image<T>>(photograph.pixels)) {
-    photograph.pixels = Image<T>();
-  }
-  return std::get<Image<T>>(photograph.pixels);
-}
-
 template <typename T>
 void copy_pixels(ImageView<const T> source, ImageView<T> target) {
   for (int y = 0; y < source.height(); ++y) {

@@ -6,8 +6,8 @@
 #include <set>
 
 #include "engine/error.h"
-#include "engine/io/files/file_identity.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/files/checksum.h"
+#include "engine/io/maps/map_io.h"
 
 namespace vantage {
 namespace {

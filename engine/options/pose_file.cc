@@ -22,9 +22,9 @@ namespace {
 const std::vector<std::string> kKeys = {"at", "K", "R", "t", "size", "frame"};
 
 SettingValue read_json(const std::string& path) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  const std::string text = read_file_text(path);
   try {
-    return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+    return parse_json(text, path);
   } catch (const Error& error) {
     throw UsageError(error.what());
   }

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "engine/error.h"
-#include "engine/io/files/stored_name.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {

@@ -9,8 +9,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/files/base64.h"
-#include "engine/io/files/markup_text.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/io/images/png_encoder.h"
 
 namespace vantage {

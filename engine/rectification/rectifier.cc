@@ -82,10 +82,7 @@ void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
   }
   std::visit(
       [&]<typename T>(const Image<T>& from) {
-        if (!std::holds_alternative<Image<T>>(result.pixels)) {
-          result.pixels = Image<T>();
-        }
-        Image<T>& to = std::get<Image<T>>(result.pixels);
+        Image<T>& to = pixels_of<T>(result);
         to.resize(width, height, from.channels());
         execution.for_each_band(height, [&](int first_row, int end_row) {
           for (int y = first_row; y < end_row; ++y) {

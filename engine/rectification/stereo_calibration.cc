@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "engine/error.h"
-#include "engine/io/files/image_size_limit.h"
+#include "engine/io/files/file_bytes.h"
 
 namespace vantage {
 namespace {

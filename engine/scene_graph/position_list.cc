@@ -65,8 +65,7 @@ std::vector<SceneImage> parse_position_list(std::string_view text, const fs::pat
 }
 
 std::vector<SceneImage> read_position_list(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
-  return parse_position_list({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
+  return parse_position_list(read_file_text(file), file);
 }
 
 }  // namespace vantage

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/execution.h"
-#include "engine/io/files/file_lock.h"
+#include "engine/io/files/file_descriptor.h"
 #include "engine/scene_graph/edge_maps.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/scene_graph/stored_scene.h"

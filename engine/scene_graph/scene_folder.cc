@@ -11,7 +11,7 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/temporary_name.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 
 namespace vantage {
 namespace {

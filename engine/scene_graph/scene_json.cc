@@ -10,8 +10,8 @@
 
 #include "engine/build_info.h"
 #include "engine/error.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/io/files/json_text.h"
-#include "engine/io/files/stored_name.h"
 #include "engine/view_geometry/posed_camera.h"
 
 namespace vantage {

@@ -9,10 +9,10 @@
 
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/checksum.h"
 #include "engine/io/files/file_bytes.h"
-#include "engine/io/files/file_identity.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/scene_graph/scene_json.h"
 
 namespace vantage {
@@ -21,10 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSceneFile = "scene.json";
-
-std::string_view as_text(const std::vector<std::uint8_t>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 template <typename Picture>
 void require_size(const fs::path& file, const Picture& picture, const Photograph& image) {
@@ -106,9 +102,9 @@ std::vector<std::string> StoredScene::names() const {
 }
 
 std::string content_of_file(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
+  const std::string bytes = read_file_text(file);
   Fnv1aHash hash;
-  hash.add(as_text(bytes));
+  hash.add(bytes);
   return fmt::format("{} bytes, hash {:016x}", bytes.size(), hash.value());
 }
 
@@ -118,7 +114,7 @@ std::optional<StoredScene> find_scene(const fs::path& folder) {
   if (!fs::exists(file, ignored)) {
     return std::nullopt;
   }
-  return parse_scene(as_text(read_file_bytes(file)), file.string());
+  return parse_scene(read_file_text(file), file.string());
 }
 
 StoredScene read_scene(const fs::path& folder) {

@@ -6,8 +6,7 @@
 #include <variant>
 
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/depth_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/frame_worker.h"

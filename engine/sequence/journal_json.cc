@@ -13,8 +13,8 @@
 #include "engine/build_info.h"
 #include "engine/error.h"
 #include "engine/io/files/checksum.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/io/files/json_text.h"
-#include "engine/io/files/stored_name.h"
 
 namespace vantage {
 namespace {

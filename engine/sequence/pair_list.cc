@@ -15,8 +15,8 @@
 
 #include "engine/error.h"
 #include "engine/io/files/csv_records.h"
+#include "engine/io/files/encoded_text.h"
 #include "engine/io/files/file_bytes.h"
-#include "engine/io/files/stored_name.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {
@@ -187,8 +187,7 @@ std::vector<ListedPair> parse_pair_list(std::string_view text, const fs::path& f
 }
 
 std::vector<ListedPair> read_pair_list(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
-  return parse_pair_list({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file);
+  return parse_pair_list(read_file_text(file), file);
 }
 
 }  // namespace vantage

@@ -13,7 +13,6 @@
 #include "engine/io/files/checksum.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/frame_source.h"
-#include "engine/io/video/frame_times.h"
 #include "engine/sequence/flicker.h"
 #include "engine/sequence/frame_range.h"
 #include "engine/view_geometry/depth_resolution.h"

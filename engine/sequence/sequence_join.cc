@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/io/files/file_lock.h"
+#include "engine/io/files/file_descriptor.h"
 #include "engine/io/files/temporary_name.h"
-#include "engine/io/video/frame_times.h"
+#include "engine/io/video/frame_rate.h"
 #include "engine/io/video/video_join.h"
 
 namespace vantage {

@@ -46,8 +46,9 @@ SequenceLayout::SequenceLayout(fs::path folder, const SequenceOptions& options)
     if (is_of_all_frames(output)) {
       continue;
     }
-    const std::string extension(extension_of(
-        output == SequenceOutput::kDepthVideo ? options.depth_coding : VideoCoding::kH264));
+    const std::string extension(
+        traits_of(output == SequenceOutput::kDepthVideo ? options.depth_coding : VideoCoding::kH264)
+            .extension);
     const bool as_video = options.saves_as_video(output);
     if (!is_per_view(output) || options.views.size() == 1) {
       streams_.push_back({output, 0, as_video, extension, name});

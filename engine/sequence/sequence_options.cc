@@ -8,9 +8,8 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/io/maps/depth_io.h"
-#include "engine/io/maps/disparity_io.h"
 #include "engine/io/maps/map_formats.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/search/match_inputs.h"
 #include "engine/matching/search/previous_maps.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "engine/io/files/checksum.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 
 namespace vantage {
 

@@ -232,12 +232,9 @@ void BlendedSynthesizer::synthesize(std::span<const BlendSource> sources,
   std::visit(
       [&]<typename T>(const Image<T>& /*image*/) {
         const BlendedWarper<T> warper(sources, options_, new_view, execution_);
-        if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
-          view.image.pixels.template emplace<Image<T>>();
-        }
         constexpr std::array<IntensityFit, 4> kAsTheyAre{};
         ViewAssembly<T, BlendedWarper<T>>(warper, options_, first.channels(), execution_)
-            .run(std::get<Image<T>>(view.image.pixels), view, &kAsTheyAre);
+            .run(pixels_of<T>(view.image), view, &kAsTheyAre);
       },
       first.pixels);
 }

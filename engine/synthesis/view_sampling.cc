@@ -215,10 +215,7 @@ void reduce_view(const SynthesizedView& fine, const ViewSampling& sampling, Synt
   view.intensity = fine.intensity;
   std::visit(
       [&]<typename T>(const Image<T>& fine_image) {
-        if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
-          view.image.pixels.template emplace<Image<T>>();
-        }
-        auto& image = std::get<Image<T>>(view.image.pixels);
+        Image<T>& image = pixels_of<T>(view.image);
         image.resize(width, height, fine_image.channels());
         execution.for_each_band(height, [&](int first_row, int end_row) {
           const auto memory = execution.scratch().lease(

@@ -201,10 +201,7 @@ void sample_at(const PairOfMaps& pair, const SynthesisOptions& options, const Po
                const std::array<IntensityFit, 4>* given_fit) {
   with_synthesis(pair, options, position, execution,
                  [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
-                   if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
-                     view.image.pixels.template emplace<Image<T>>();
-                   }
-                   synthesis.run(std::get<Image<T>>(view.image.pixels), view, given_fit);
+                   synthesis.run(pixels_of<T>(view.image), view, given_fit);
                  });
 }
 
@@ -323,10 +320,7 @@ void ViewSynthesizer::synthesize(const PhotographTriple& triple, const TripleVie
   options.gamma.reset();
   with_synthesis(triple, options, new_view, fit.second_on_first, execution_,
                  [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
-                   if (!std::holds_alternative<Image<T>>(view.image.pixels)) {
-                     view.image.pixels.template emplace<Image<T>>();
-                   }
-                   synthesis.run(std::get<Image<T>>(view.image.pixels), view, &fit.third_on_others);
+                   synthesis.run(pixels_of<T>(view.image), view, &fit.third_on_others);
                  });
 }
 

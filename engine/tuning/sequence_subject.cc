@@ -6,7 +6,7 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/images/image_file.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/sequence/memory_plan.h"
 #include "engine/tuning/candidate_ladder.h"
 #include "scheduler/frame_pipeline.h"

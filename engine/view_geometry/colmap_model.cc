@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <system_error>
 
@@ -59,11 +58,6 @@ Camera camera_of(const LensName& lens, std::vector<double> values) {
     camera.distortion.resize(4);  // radial only
   }
   return camera;
-}
-
-std::string text_of(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// The rest of a line after so many words, without blanks around it: a name may hold blanks.
@@ -181,8 +175,9 @@ std::vector<ColmapImage> read_colmap_model(const fs::path& folder) {
                     "'colmap model_converter --output_type TXT' writes them",
                     folder.string()));
   }
-  std::vector<ColmapImage> model = parse_colmap_images(
-      text_of(images), images.string(), parse_colmap_cameras(text_of(cameras), cameras.string()));
+  std::vector<ColmapImage> model =
+      parse_colmap_images(read_file_text(images), images.string(),
+                          parse_colmap_cameras(read_file_text(cameras), cameras.string()));
   if (model.empty()) {
     throw Error(fmt::format("{}: holds no images", images.string()));
   }

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <initializer_list>
 
 #include "engine/error.h"
@@ -208,9 +207,7 @@ SizedCamera parse_intrinsics(std::string_view text, const std::string& file, int
 }
 
 SizedCamera read_intrinsics(const std::filesystem::path& file, int kitti_camera) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
-  return parse_intrinsics({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                          file.string(), kitti_camera);
+  return parse_intrinsics(read_file_text(file), file.string(), kitti_camera);
 }
 
 bool has_opencv_poses(std::string_view text) {

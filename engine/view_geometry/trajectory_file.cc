@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
@@ -85,9 +84,7 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file) {
 }
 
 Trajectory read_trajectory(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
-  return parse_trajectory({reinterpret_cast<const char*>(bytes.data()), bytes.size()},
-                          file.string());
+  return parse_trajectory(read_file_text(file), file.string());
 }
 
 }  // namespace vantage

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "perf/peers.h"
 
 namespace vantage::perf {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "tests/engine/io_test_support.h"

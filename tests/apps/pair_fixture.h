@@ -2,7 +2,7 @@
 
 #include "engine/generation/book_pairs.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "tests/apps/vantage_process.h"
 
 namespace vantage {

@@ -1,4 +1,4 @@
-#include "engine/io/files/base64.h"
+#include "engine/io/files/encoded_text.h"
 
 #include <gtest/gtest.h>
 

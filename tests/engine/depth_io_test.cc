@@ -1,4 +1,4 @@
-#include "engine/io/maps/depth_io.h"
+#include "engine/io/maps/map_io.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
 #include "engine/io/maps/map_formats.h"
 #include "tests/engine/io_test_support.h"
 

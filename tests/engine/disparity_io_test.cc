@@ -1,4 +1,4 @@
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,7 +12,7 @@
 #include "engine/generation/book_pairs.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/test_paths.h"

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "engine/error.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "scheduler/interruption.h"
 #include "tests/engine/made_up_pairs.h"
 

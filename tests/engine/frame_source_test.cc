@@ -11,9 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "engine/io/files/file_identity.h"
-#include "engine/io/files/frame_number.h"
-#include "engine/io/files/natural_order.h"
+#include "engine/io/files/checksum.h"
+#include "engine/io/files/numbered_names.h"
 #include "tests/engine/frame_test_support.h"
 
 namespace vantage {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/video_io.h"
 #include "tests/engine/io_test_support.h"

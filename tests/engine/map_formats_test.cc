@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/io/maps/disparity_io.h"
-#include "engine/io/maps/displacement_io.h"
+#include "engine/io/maps/map_io.h"
 #include "tests/temporary_folder.h"
 
 namespace vantage {

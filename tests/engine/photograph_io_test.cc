@@ -1,5 +1,5 @@
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/files/image_size_limit.h"
+#include "engine/io/files/file_bytes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/io/video/video_io.h"
 #include "engine/sequence/busy_clock.h"
 #include "engine/sequence/delivered_frames.h"

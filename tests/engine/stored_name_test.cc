@@ -1,4 +1,4 @@
-#include "engine/io/files/stored_name.h"
+#include "engine/io/files/encoded_text.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "engine/io/video/frame_conversion.h"
 #include "engine/io/video/libav.h"
-#include "engine/io/video/photograph_to_frame.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -87,7 +87,7 @@ void write_sound(AVFormatContext& output, const Sound& sound) {
 void put_grouped_video(const std::filesystem::path& path, int frames, FrameRate rate,
                        const std::string& x264_options) {
   silence_libav();
-  PhotographToFrame conversion(64, 48);
+  const FrameConversion convert = make_frame_conversion(VideoCoding::kH264, 64, 48);
   const LibavCodec encoder(avcodec_alloc_context3(avcodec_find_encoder_by_name("libx264")));
   encoder->width = 64;
   encoder->height = 48;
@@ -110,7 +110,7 @@ void put_grouped_video(const std::filesystem::path& path, int frames, FrameRate 
   require(avformat_write_header(output.get(), nullptr));
   const LibavPacket packet = make_libav_packet();
   for (int i = 0; i <= frames; ++i) {
-    AVFrame* frame = i < frames ? &conversion.convert(numbered_frame(64, 48, i)) : nullptr;
+    AVFrame* frame = i < frames ? &convert(numbered_frame(64, 48, i)) : nullptr;
     if (frame != nullptr) {
       frame->pts = i;
     }

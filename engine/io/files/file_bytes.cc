@@ -5,15 +5,19 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <system_error>
 
+#include "engine/error.h"
 #include "engine/io/files/file_descriptor.h"
-#include "engine/io/files/image_size_limit.h"
 
 namespace vantage {
 namespace {
+
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
+std::atomic<long long> accepted_pixels = kMaxImagePixels;
 
 namespace fs = std::filesystem;
 
@@ -22,6 +26,15 @@ namespace fs = std::filesystem;
 }
 
 }  // namespace
+
+long long max_image_pixels() { return accepted_pixels; }
+
+void set_max_image_pixels(long long pixels) {
+  if (pixels < 1 || pixels > kMaxImagePixels) {
+    throw UsageError(fmt::format("max-pixels is {}, expected 1 to {}", pixels, kMaxImagePixels));
+  }
+  accepted_pixels = pixels;
+}
 
 std::vector<std::uint8_t> read_file_bytes(const fs::path& path) {
   std::error_code error;
@@ -63,6 +76,11 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path) {
   }
   bytes.resize(filled);
   return bytes;
+}
+
+std::string read_file_text(const fs::path& path) {
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  return {bytes.begin(), bytes.end()};
 }
 
 void FileBytes::check_dimensions(long long width, long long height) const {

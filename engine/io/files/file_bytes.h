@@ -13,8 +13,21 @@
 
 namespace vantage {
 
+/// Maximum width or height, and maximum number of pixels of one image: beyond them a header counts
+/// as damaged before any memory is allocated.
+inline constexpr int kMaxImageSide = 65500;
+inline constexpr long long kMaxImagePixels = 1LL << 28;
+
+/// Maximum number of pixels of images and videos in this process: kMaxImagePixels unless set to a
+/// value from 1 to that. Throws UsageError beyond. Thread rule: may be called concurrently; images
+/// read at the same time have the old limit or the new one.
+long long max_image_pixels();
+void set_max_image_pixels(long long pixels);
+
 /// Content of a regular file. Throws Error when it is missing, unreadable, empty or not a file.
 std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path);
+/// The same as text.
+std::string read_file_text(const std::filesystem::path& path);
 
 /// The bytes of a file with bounds-checked access and errors that name the file. Does not own them.
 class FileBytes {

@@ -1,6 +1,7 @@
 #include "engine/io/files/file_descriptor.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -37,6 +38,12 @@ void flush_folder(const std::filesystem::path& folder) {
   if (open_folder.valid()) {
     (void)::fsync(open_folder.get());
   }
+}
+
+FileLock::FileLock(const std::filesystem::path& path, Wait wait)
+    : file_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
+  is_held_ = ::flock(file_.get(), LOCK_EX | (wait == Wait::kNo ? LOCK_NB : 0)) == 0 ||
+             errno != EWOULDBLOCK;
 }
 
 }  // namespace vantage

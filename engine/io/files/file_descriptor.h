@@ -39,4 +39,21 @@ bool write_all_at(int descriptor, std::size_t offset, std::span<const std::uint8
 /// Makes names in `folder` durable across a power cut, if the file system supports it.
 void flush_folder(const std::filesystem::path& folder);
 
+/// Holds an exclusive lock on the existing file `path` for the lifetime of the object. Has no
+/// effect on file systems without locks.
+class FileLock {
+ public:
+  /// Whether to wait for other processes; otherwise see is_held().
+  enum class Wait { kNo, kYes };
+
+  FileLock(const std::filesystem::path& path, Wait wait);
+
+  /// False when another process holds it.
+  [[nodiscard]] bool is_held() const { return is_held_; }
+
+ private:
+  FileDescriptor file_;
+  bool is_held_;
+};
+
 }  // namespace vantage

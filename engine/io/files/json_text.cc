@@ -75,8 +75,7 @@ Json parse_json(std::string_view text, const std::string& name) {
 }
 
 Json read_json_file(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(file);
-  return parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+  return parse_json(read_file_text(file), file.string());
 }
 
 std::string quoted_json(const Json& value) {

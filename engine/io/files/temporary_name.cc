@@ -10,8 +10,8 @@
 #include <system_error>
 #include <vector>
 
-#include "engine/io/files/decimal_digit.h"
-#include "engine/io/files/file_identity.h"
+#include "engine/io/files/checksum.h"
+#include "engine/io/files/numbered_names.h"
 
 namespace vantage {
 namespace {

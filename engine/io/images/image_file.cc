@@ -14,13 +14,12 @@
 #include "engine/error.h"
 #include "engine/io/images/image_header.h"
 #include "engine/io/images/jpeg_decoder.h"
+#include "engine/io/images/netpbm.h"
 #include "engine/io/images/opencv_codecs.h"
 #include "engine/io/images/opencv_setup.h"
-#include "engine/io/images/pfm.h"
 #include "engine/io/images/png_decoder.h"
 #include "engine/io/images/png_encoder.h"
 #include "engine/io/images/png_structure.h"
-#include "engine/io/images/pnm.h"
 
 namespace vantage {
 namespace {

@@ -7,10 +7,11 @@
 
 namespace vantage {
 
+/// Our own decoder, with libdeflate, because libpng inflates with zlib.
 /// The pixels of a PNG file of the common kinds (8 or 16 bits of grey, RGB or RGBA; no palette, no
-/// transparent colour, not interlaced), in a third of the time of a general decoder. Empty for
-/// other kinds, and when the compressed data does not have exactly the size in the header: a
-/// general decoder decides about those. Reuses `memory` if it has the pixels' depth and size.
+/// transparent colour, not interlaced), in a third of libpng's time. Empty for other kinds, and
+/// when the compressed data does not have exactly the size in the header: libpng decides about
+/// those. Reuses `memory` if it has the pixels' depth and size.
 std::optional<Photograph> decode_usual_png(const PngStructure& structure, Photograph& memory);
 
 /// The pixels of any PNG file: palettes become RGB, a transparent colour alpha, and fewer than 8

@@ -7,6 +7,7 @@
 
 namespace vantage {
 
+/// Our own writer, because libpng compresses with zlib: libdeflate takes a fraction of its time.
 /// Encodes an image with 1, 3 (RGB) or 4 (RGBA) channels as PNG to `bytes`, optimised for speed.
 /// Files are identical on every processor. `bytes` stays empty if a side has more than 1 000 000
 /// pixels, because libpng cannot read such files. Thread rule: may be called concurrently.

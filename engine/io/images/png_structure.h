@@ -8,7 +8,8 @@
 
 namespace vantage {
 
-/// Structure of a PNG file. Refers to the bytes of the file.
+/// Structure of a PNG file, read by our own code: libpng does not compare the size of a file with
+/// that of its pixels, and applies what must be ignored here. Refers to the bytes of the file.
 struct PngStructure {
   int width = 0;
   int height = 0;

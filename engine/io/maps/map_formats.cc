@@ -12,9 +12,10 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/finite_values.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/images/image_file.h"
-#include "engine/io/images/pfm.h"
+#include "engine/io/images/netpbm.h"
 #include "engine/io/maps/npy.h"
 #include "kernels/integer_disparity/integer_disparity.h"
 
@@ -28,16 +29,6 @@ using Disparity = ImageView<const float>;
 static_assert(std::endian::native == std::endian::little);
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-/// ±inf become NaN.
-Image<float> with_nan(Disparity disparity) {
-  Image<float> result(disparity.width(), disparity.height());
-  for (int y = 0; y < disparity.height(); ++y) {
-    std::transform(disparity.row(y), disparity.row(y) + disparity.width(), result.row(y),
-                   [](float d) { return std::isfinite(d) ? d : kNan; });
-  }
-  return result;
-}
 
 void disparity_as_pfm(const fs::path& /*path*/, Disparity disparity, Bytes& bytes) {
   encode_pfm(disparity, bytes, std::numeric_limits<float>::infinity());

@@ -9,6 +9,8 @@
 
 namespace vantage {
 
+// Our own reader and writer: Debian has no library for NumPy's files.
+
 /// True when `file` starts like a NumPy array file.
 bool is_npy(const FileBytes& file);
 

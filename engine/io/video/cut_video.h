@@ -7,6 +7,9 @@ struct AVPacket;
 
 namespace vantage {
 
+// Our own look at H.264, because FFmpeg marks as key frames also those after which frames from
+// before are shown.
+
 /// Whether decoding from this packet gives the same frames as decoding from an earlier one, and
 /// later shows no earlier frame. Known for H.264 and for intra-only codecs.
 bool begins_afresh(const AVPacket& packet, const AVCodecParameters& parameters);

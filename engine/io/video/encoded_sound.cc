@@ -1,5 +1,3 @@
-#include "engine/io/video/encoded_sound.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 
 #include "engine/error.h"
 #include "engine/io/video/libav_functions.h"
+#include "engine/io/video/sound_packets.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

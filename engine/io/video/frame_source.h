@@ -8,7 +8,6 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/video/frame_rate.h"
-#include "engine/io/video/frame_times.h"
 #include "engine/io/video/video_picture.h"
 
 namespace vantage {

@@ -61,10 +61,7 @@ void convert_grey(const AVFrame& frame, const std::vector<std::uint16_t>& levels
 /// The image of `photograph` as one of T with that shape.
 template <typename T>
 Image<T>& shape(Photograph& photograph, int width, int height, int channels) {
-  if (!std::holds_alternative<Image<T>>(photograph.pixels)) {
-    photograph.pixels = Image<T>();
-  }
-  auto& image = std::get<Image<T>>(photograph.pixels);
+  Image<T>& image = pixels_of<T>(photograph);
   image.resize(width, height, channels);
   return image;
 }

@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "engine/error.h"
+#include "engine/io/files/checksum.h"
 #include "engine/io/files/file_bytes.h"
-#include "engine/io/files/file_identity.h"
-#include "engine/io/files/natural_order.h"
+#include "engine/io/files/numbered_names.h"
 
 namespace vantage {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/files/frame_number.h"
+#include "engine/io/files/numbered_names.h"
 #include "engine/io/video/frame_source.h"
 
 namespace vantage {

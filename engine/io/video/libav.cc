@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/io/files/image_size_limit.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/io/video/libav_functions.h"
 #include "engine/io/video/video_structure.h"
 
@@ -17,6 +17,7 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/audio_fifo.h>
+#include <libavutil/macros.h>
 #include <libswresample/swresample.h>
 #include <libswscale/swscale.h>
 }
@@ -25,6 +26,8 @@ namespace vantage {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kWithoutThem = "cannot read or write videos";
 
 /// Demultiplexers of containers and of raw streams with frames of one video.
 constexpr const char* kContainers =
@@ -75,6 +78,16 @@ AVStream* find_stream(AVFormatContext& input, AVMediaType type) {
 }
 
 }  // namespace
+
+// The major versions of the headers: FFmpeg changes types only between major versions.
+LibavFunctions::LibavFunctions()
+    : format_("libavformat.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR), kWithoutThem),
+      codec_("libavcodec.so." AV_STRINGIFY(LIBAVCODEC_VERSION_MAJOR), kWithoutThem) {}
+
+const LibavFunctions& libav() {
+  static const LibavFunctions functions;
+  return functions;
+}
 
 void LibavFree::operator()(AVAudioFifo* samples) const noexcept { av_audio_fifo_free(samples); }
 void LibavFree::operator()(AVCodecContext* codec) const noexcept {

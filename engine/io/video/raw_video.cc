@@ -15,12 +15,12 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/libav_functions.h"
-#include "engine/io/video/video_encoder.h"
 #include "scheduler/interruption.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
+#include <libavutil/imgutils.h>
 #include <libavutil/pixdesc.h>
 }
 
@@ -179,17 +179,12 @@ void StreamedVideoWriter::put_header(const AVFrame& frame, bool is_grey) {
 }
 
 void StreamedVideoWriter::put_planes(const AVFrame& frame) {
-  const auto* format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
-  for (int plane = 0; plane < format->nb_components; ++plane) {
-    const bool is_chroma = plane > 0;
-    const int width = is_chroma ? frame.width >> format->log2_chroma_w : frame.width;
-    const int height = is_chroma ? frame.height >> format->log2_chroma_h : frame.height;
-    const std::size_t bytes =
-        static_cast<std::size_t>(width) * (format->comp[plane].depth > 8 ? 2 : 1);
-    for (int y = 0; y < height; ++y) {
-      put(frame.data[plane] + std::ptrdiff_t{y} * frame.linesize[plane], bytes);
-    }
-  }
+  const auto format = static_cast<AVPixelFormat>(frame.format);
+  planes_.resize(
+      static_cast<std::size_t>(av_image_get_buffer_size(format, frame.width, frame.height, 1)));
+  av_image_copy_to_buffer(planes_.data(), static_cast<int>(planes_.size()), frame.data,
+                          frame.linesize, format, frame.width, frame.height, 1);
+  put(planes_.data(), planes_.size());
 }
 
 void StreamedVideoWriter::put_rgb(const Photograph& frame) {

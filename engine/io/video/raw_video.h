@@ -2,17 +2,17 @@
 
 #include <atomic>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "engine/io/video/frame_conversion.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/libav.h"
 #include "engine/io/video/raw_video_shape.h"
 #include "engine/io/video/standard_input.h"
-#include "engine/io/video/video_coding.h"
 #include "engine/io/video/video_picture.h"
 
 namespace vantage {
@@ -80,7 +80,8 @@ class StreamedVideoWriter {
   StreamFormat format_;
   FrameRate rate_;
   bool has_header_ = false;
-  std::function<AVFrame&(const Photograph&)> convert_;
+  FrameConversion convert_;
+  std::vector<std::uint8_t> planes_;
 };
 
 }  // namespace vantage

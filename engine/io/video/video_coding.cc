@@ -1,28 +1,74 @@
 #include "engine/io/video/video_coding.h"
 
-namespace vantage {
+#include <array>
+#include <cstddef>
 
-const std::vector<std::pair<std::string_view, VideoCoding>>& grey_coding_names() {
-  static const std::vector<std::pair<std::string_view, VideoCoding>> names = {
-      {"ffv1-16", VideoCoding::kFfv1_16},
-      {"ffv1-10", VideoCoding::kFfv1_10},
-      {"hevc-10", VideoCoding::kHevc_10},
-      {"prores-10", VideoCoding::kProRes_10}};
-  return names;
+extern "C" {
+#include <libavutil/pixfmt.h>
 }
 
-std::string_view extension_of(VideoCoding coding) {
-  switch (coding) {
-    case VideoCoding::kFfv1_16:
-    case VideoCoding::kFfv1_10:
-      return "mkv";
-    case VideoCoding::kProRes_10:
-      return "mov";
-    case VideoCoding::kH264:
-    case VideoCoding::kHevc_10:
-      break;
-  }
-  return "mp4";
+namespace vantage {
+namespace {
+
+/// In the order of VideoCoding.
+///
+/// The preset of x264: photographs of 1226×370 pixels at factor 18 take 23 ms a frame (Zen 4, one
+/// thread) with "veryfast". "superfast" takes 14 ms and a tenth more bytes, "faster", "fast" and
+/// "medium" take 35, 48 and 63 ms with no fewer bytes. No tuning: views are of any kind.
+constexpr std::array kCodings = {
+    VideoCodingTraits{.name = "h264",
+                      .extension = "mp4",
+                      .encoder = "libx264",
+                      .pixel_format = AV_PIX_FMT_YUV420P,
+                      .has_crf = true,
+                      .options = "preset=veryfast,x264-params=cpu-independent=1:stitchable=1"},
+    VideoCodingTraits{.name = "ffv1-16",
+                      .extension = "mkv",
+                      .bits = 16,
+                      .encoder = "ffv1",
+                      .pixel_format = AV_PIX_FMT_GRAY16LE,
+                      .has_full_range = true,
+                      .has_odd_sizes = true,
+                      .options = "level=3,coder=range_def,slicecrc=1"},
+    VideoCodingTraits{.name = "ffv1-10",
+                      .extension = "mkv",
+                      .bits = 10,
+                      .encoder = "ffv1",
+                      .pixel_format = AV_PIX_FMT_GRAY10LE,
+                      .has_full_range = true,
+                      .has_odd_sizes = true,
+                      .options = "level=3,coder=range_def,slicecrc=1"},
+    VideoCodingTraits{.name = "hevc-10",
+                      .extension = "mp4",
+                      .bits = 10,
+                      .encoder = "libx265",
+                      .pixel_format = AV_PIX_FMT_GRAY10LE,
+                      .has_full_range = true,
+                      .has_crf = true,
+                      .options = "preset=fast,x265-params=log-level=none:pools=none:"
+                                 "frame-threads=1:bframes=0:open-gop=0:info=0:range=full"},
+    VideoCodingTraits{.name = "prores-10",
+                      .extension = "mov",
+                      .bits = 10,
+                      .encoder = "prores_ks",
+                      .pixel_format = AV_PIX_FMT_YUV422P10LE,
+                      .options = "profile=hq"}};
+
+}  // namespace
+
+const VideoCodingTraits& traits_of(VideoCoding coding) {
+  return kCodings.at(static_cast<std::size_t>(coding));
+}
+
+const std::vector<std::pair<std::string_view, VideoCoding>>& grey_coding_names() {
+  static const auto kNames = [] {
+    std::vector<std::pair<std::string_view, VideoCoding>> names;
+    for (std::size_t i = 1; i < kCodings.size(); ++i) {
+      names.emplace_back(kCodings[i].name, static_cast<VideoCoding>(i));
+    }
+    return names;
+  }();
+  return kNames;
 }
 
 }  // namespace vantage

@@ -15,14 +15,25 @@ enum class VideoCoding {
   kProRes_10  ///< grey as the luma of 4:2:2 video with 10 bits, lossy, MOV
 };
 
-/// Names of the grey ones on the command line: ffv1-16, ffv1-10, hevc-10, prores-10.
+/// What a coding is: a line of the table in the .cc file, where another one is added.
+struct VideoCodingTraits {
+  std::string_view name;       ///< on the command line: ffv1-16, ffv1-10, hevc-10, prores-10
+  std::string_view extension;  ///< of the files, without the dot
+  int bits = 8;
+  const char* encoder = "";     ///< FFmpeg's name
+  int pixel_format = 0;         ///< FFmpeg's number, AV_PIX_FMT_…
+  bool has_full_range = false;  ///< else 16 to 235, with 8 bits
+  bool has_odd_sizes = false;   ///< and every frame can be decoded alone
+  bool has_crf = false;
+  /// Of the encoder, KEY=VALUE with commas between. All: one algorithm on every processor, one
+  /// thread, and headers that do not depend on the pictures, so that bytes depend on the frames
+  /// only and segments can be joined.
+  const char* options = "";
+};
+
+const VideoCodingTraits& traits_of(VideoCoding coding);
+/// The grey ones by name.
 const std::vector<std::pair<std::string_view, VideoCoding>>& grey_coding_names();
-
-/// Of the files, without the dot.
-std::string_view extension_of(VideoCoding coding);
-
 constexpr bool is_grey(VideoCoding coding) { return coding != VideoCoding::kH264; }
-/// Bits of the values of a grey coding.
-constexpr int bits_of(VideoCoding coding) { return coding == VideoCoding::kFfv1_16 ? 16 : 10; }
 
 }  // namespace vantage

@@ -7,7 +7,6 @@
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
-#include "engine/io/files/image_size_limit.h"
 #include "engine/io/video/libav_functions.h"
 #include "scheduler/trace.h"
 

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <functional>
-
-#include "engine/image/photograph.h"
 #include "engine/io/video/libav.h"
 #include "engine/io/video/video_coding.h"
 #include "engine/io/video/video_io.h"
@@ -31,9 +28,5 @@ class EncoderSetup {
   LibavCodec encoder_;
   AVDictionary* options_ = nullptr;
 };
-
-/// Converts photographs to frames of the encoder for `coding`; frames are valid until the next one.
-std::function<AVFrame&(const Photograph&)> make_frame_conversion(VideoCoding coding, int width,
-                                                                 int height);
 
 }  // namespace vantage

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/io/files/file_identity.h"
+#include "engine/io/files/checksum.h"
 
 namespace vantage {
 

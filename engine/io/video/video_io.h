@@ -6,7 +6,6 @@
 
 #include "engine/image/photograph.h"
 #include "engine/io/video/frame_rate.h"
-#include "engine/io/video/frame_times.h"
 #include "engine/io/video/video_coding.h"
 #include "engine/io/video/video_picture.h"
 
@@ -80,7 +79,7 @@ struct VideoEncoding {
 /// Thread rule: one thread at a time.
 class VideoWriter {
  public:
-  /// `path` ends in .mp4, or what else extension_of() the coding is; width and height in 2..16384
+  /// `path` ends in .mp4, or what else the coding's files end in; width and height in 2..16384
   /// pixels. Throws UsageError for values outside, Error when the file cannot be written.
   VideoWriter(const std::filesystem::path& path, int width, int height,
               const VideoEncoding& encoding);

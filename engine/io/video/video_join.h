@@ -6,9 +6,11 @@
 #include <string>
 
 #include "engine/io/video/frame_rate.h"
-#include "engine/io/video/frame_times.h"
 
 namespace vantage {
+
+// Our own joining, because FFmpeg's (concat) shifts each file by the duration of those before it,
+// which containers round.
 
 /// A part of another video's sound.
 struct SoundTrack {

@@ -4,6 +4,9 @@
 
 namespace vantage {
 
+// Our own reader of containers' structure, because FFmpeg opens truncated files without a word, and
+// allocates an entry for each sample that a table promises.
+
 enum class VideoExtent {
   kWhole,
   kCutOff,        ///< some of its last frames are missing

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/io/video/frame_rate.h"
-#include "engine/io/video/frame_times.h"
 
 struct AVFormatContext;
 struct AVStream;

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <functional>
 #include <new>
 #include <string>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/video/frame_conversion.h"
 #include "engine/io/video/libav_functions.h"
 #include "engine/io/video/video_encoder.h"
 #include "engine/io/video/video_io.h"
@@ -21,7 +21,7 @@ namespace {
 
 void check_video_settings(const std::filesystem::path& path, int width, int height,
                           const VideoEncoding& encoding) {
-  const std::string extension = fmt::format(".{}", extension_of(encoding.coding));
+  const std::string extension = fmt::format(".{}", traits_of(encoding.coding).extension);
   if (lower_case_extension(path) != extension) {
     throw UsageError(fmt::format("cannot write {}: expected a video name ending in {}",
                                  path.string(), extension));
@@ -53,7 +53,7 @@ struct VideoWriter::State {
   int width;
   int height;
   AVRational time_unit;
-  std::function<AVFrame&(const Photograph&)> convert;  ///< until encoding has ended
+  FrameConversion convert;  ///< until encoding has ended
   LibavCodec encoder;
   LibavPacket packet = make_libav_packet();
   VideoMuxer file;

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <vector>
 
+#include "engine/image/displacement_view.h"
 #include "engine/image/image.h"
+#include "engine/image/side.h"
 
 namespace vantage {
 
@@ -36,5 +38,34 @@ void encode_disparity(const std::filesystem::path& path, ImageView<const float> 
 /// to max_px: a 16-bit PNG holds 0 to 255.99. Call it before the search, whose result would
 /// otherwise be lost.
 void require_holds_search(const std::filesystem::path& path, int min_px, int max_px);
+
+/// Encodes depths in metres (NaN = unknown) to `bytes`, whose memory is reused: the content that
+/// write_depth() writes to `path`. Errors as write_depth().
+void encode_depth(const std::filesystem::path& path, ImageView<const float> depth_m,
+                  std::vector<std::uint8_t>& bytes);
+
+/// Writes by extension (map_formats.h): 16-bit .png in millimetres (0 = unknown; depths below half
+/// a millimetre are stored as 1), or .pfm (+inf = unknown), .tiff, .exr, .npy (NaN) in metres.
+/// Writes atomically. Throws UsageError for another extension, Error when the file cannot be
+/// written or a depth exceeds kMaxIntegerDepth_m in a PNG. Thread rule: may be called concurrently
+/// for different files.
+void write_depth(const std::filesystem::path& path, ImageView<const float> depth_m);
+
+/// The maximum depth that a file named `path` holds; infinity if there is no limit.
+double largest_depth_m(const std::filesystem::path& path);
+
+/// Writes both components of the displacements from the pixels of one image to their partners in
+/// the other: (u, v) = (x, y) of the partner − (x, y) of the pixel, to the right and down. For the
+/// map of the left image these are the negative disparities, for that of the right image the
+/// positive ones.
+///
+/// By extension (map_formats.h): .flo (Middlebury optical flow: "PIEH", width and height as 32-bit
+/// integers, then u, v interleaved as floats, row by row from the top, all little-endian; unknown =
+/// 1e10), .npy (shape (height, width, 2), unknown = NaN), .tiff/.exr (float, three channels R = u,
+/// G = v, B = 1 where known; unknown = 0, 0, 0). NaN and ±inf in either component are unknown.
+/// Writes atomically. Throws UsageError for another extension, Error when the file cannot be
+/// written. Thread rule: may be called concurrently for different files.
+void write_displacements(const std::filesystem::path& path, const DisplacementView& displacements,
+                         Side side);
 
 }  // namespace vantage

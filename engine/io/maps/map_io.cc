@@ -1,15 +1,16 @@
-#include "engine/io/maps/disparity_io.h"
+#include "engine/io/maps/map_io.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/image/finite_values.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/images/image_file.h"
@@ -20,16 +21,6 @@ namespace vantage {
 namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-/// Replaces non-finite values by NaN.
-DisparityMap finite_of(const Image<float>& image) {
-  DisparityMap map(image.width(), image.height());
-  for (int y = 0; y < image.height(); ++y) {
-    std::transform(image.row(y), image.row(y) + image.width(), map.row(y),
-                   [](float d) { return std::isfinite(d) ? d : kUnknown; });
-  }
-  return map;
-}
 
 template <typename T>
 DisparityMap from_integers(const Image<T>& image, double scale) {
@@ -43,6 +34,23 @@ DisparityMap from_integers(const Image<T>& image, double scale) {
   return map;
 }
 
+/// The format of a map of one component; what = "disparity" or "depth".
+const MapFormat& format_of(const std::filesystem::path& path, ImageView<const float> map,
+                           MapContent content, const char* what) {
+  const MapFormat* const format = find_map_format(path, content);
+  if (format == nullptr) {
+    throw UsageError(fmt::format("cannot write {}: unknown {} extension '{}', expected {}",
+                                 path.string(), what, path.extension().string(),
+                                 listed_map_formats(content)));
+  }
+  if (map.empty() || map.channels() != 1) {
+    throw Error(
+        fmt::format("cannot write {}: expected a {} map of at least 1x1 pixels and one channel",
+                    path.string(), what));
+  }
+  return *format;
+}
+
 }  // namespace
 
 DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
@@ -52,7 +60,7 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
   if (is_npy(file)) {
-    return finite_of(decode_npy(file));
+    return with_nan(decode_npy(file).view());
   }
   const bool is_png = file.has_at(0, "\x89PNG");
   const DecodedImage stored = decode_image(file);
@@ -63,7 +71,7 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
   return std::visit(
       [&]<typename T>(const Image<T>& image) -> DisparityMap {
         if constexpr (std::is_same_v<T, float>) {
-          return finite_of(image);
+          return with_nan(image.view());
         } else {
           const bool has_default = is_png && sizeof(T) == 2;
           if (scale == 0 && !has_default) {
@@ -81,7 +89,7 @@ Image<float> read_float_image(const std::filesystem::path& path) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
   if (is_npy(file)) {
-    return finite_of(decode_npy(file));
+    return with_nan(decode_npy(file).view());
   }
   const DecodedImage stored = decode_image(file);
   const auto* const floats = std::get_if<Image<float>>(&stored.photograph.pixels);
@@ -91,24 +99,13 @@ Image<float> read_float_image(const std::filesystem::path& path) {
                           floats == nullptr ? "integers" : "floats", channels,
                           channels == 1 ? "" : "s"));
   }
-  return finite_of(*floats);
+  return with_nan(floats->view());
 }
 
 void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
                       std::vector<std::uint8_t>& bytes) {
-  const MapFormat* const format = find_map_format(path, MapContent::kDisparity);
-  if (format == nullptr) {
-    throw UsageError(fmt::format("cannot write {}: unknown disparity extension '{}', expected {}",
-                                 path.string(), path.extension().string(),
-                                 listed_map_formats(MapContent::kDisparity)));
-  }
-  if (disparity.empty() || disparity.channels() != 1) {
-    throw Error(
-        fmt::format("cannot write {}: expected a disparity map of at least 1x1 pixels and "
-                    "one channel",
-                    path.string()));
-  }
-  format->encode_disparity(path, disparity, bytes);
+  format_of(path, disparity, MapContent::kDisparity, "disparity")
+      .encode_disparity(path, disparity, bytes);
 }
 
 void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity) {
@@ -127,6 +124,42 @@ void require_holds_search(const std::filesystem::path& path, int min_px, int max
                     "within 0:255",
                     path.string(), min_px, max_px, listed_map_formats(MapContent::kConfidence)));
   }
+}
+
+void encode_depth(const std::filesystem::path& path, ImageView<const float> depth_m,
+                  std::vector<std::uint8_t>& bytes) {
+  format_of(path, depth_m, MapContent::kDepth, "depth").encode_depth(path, depth_m, bytes);
+}
+
+void write_depth(const std::filesystem::path& path, ImageView<const float> depth_m) {
+  std::vector<std::uint8_t> bytes;
+  encode_depth(path, depth_m, bytes);
+  write_binary_file(path, bytes);
+}
+
+double largest_depth_m(const std::filesystem::path& path) {
+  const MapFormat* const format = find_map_format(path, MapContent::kDepth);
+  return format != nullptr && !format->holds_any_value ? kMaxIntegerDepth_m
+                                                       : std::numeric_limits<double>::infinity();
+}
+
+void write_displacements(const std::filesystem::path& path, const DisplacementView& displacements,
+                         Side side) {
+  const MapFormat* const format = find_map_format(path, MapContent::kDisplacements);
+  if (format == nullptr) {
+    throw UsageError(fmt::format(
+        "cannot write {}: '{}' cannot hold displacements of two components, expected {}",
+        path.string(), path.extension().string(), listed_map_formats(MapContent::kDisplacements)));
+  }
+  if (displacements.x_px.empty() || displacements.x_px.width() != displacements.y_px.width() ||
+      displacements.x_px.height() != displacements.y_px.height()) {
+    throw Error(
+        fmt::format("cannot write {}: expected two components of one size, at least 1x1 pixels",
+                    path.string()));
+  }
+  std::vector<std::uint8_t> bytes;
+  format->encode_displacements(path, displacements, side, bytes);
+  write_binary_file(path, bytes);
 }
 
 }  // namespace vantage
