@@ -35,7 +35,6 @@
 #include "engine/rectification/rectification_file.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/rectification/rectifier.h"
-#include "engine/rectification/row_error_cost.h"
 #include "engine/rectification/stereo_calibration.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "engine/rectification/vertical_error.h"
@@ -56,7 +55,6 @@
 #include "engine/synthesis/view_synthesizer.h"
 #include "engine/view_geometry/new_view.h"
 #include "engine/view_geometry/posed_camera.h"
-#include "engine/view_geometry/view_path.h"
 #include "engine/view_geometry/view_pose.h"
 
 // Sequences of pairs.

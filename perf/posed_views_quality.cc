@@ -151,11 +151,11 @@ class PosedViews {
   [[nodiscard]] std::pair<SynthesizedView, SynthesizedView> views_of(const PosedCamera& camera) {
     std::pair<SynthesizedView, SynthesizedView> views;
     ViewSynthesizer({}, execution_)
-        .synthesize(left_.image, right_.image, left_.disparity.view(), right_.disparity.view(),
+        .synthesize({left_.image, right_.image, left_.disparity.view(), right_.disparity.view()},
                     camera_view(pair_, camera), views.first);
     try {
       ThreeStepSynthesizer({}, execution_)
-          .synthesize(left_.image, right_.image, left_.disparity.view(), right_.disparity.view(),
+          .synthesize({left_.image, right_.image, left_.disparity.view(), right_.disparity.view()},
                       pair_, camera, views.second);
     } catch (const Error&) {
       views.second = {};

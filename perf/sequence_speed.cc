@@ -88,8 +88,9 @@ class Computation {
   void work(const FramePair& pair) {
     const auto results = results_.borrow();
     matcher_.match(pair.left, pair.right, {}, results->maps);
-    synthesizer_.synthesize(pair.left, pair.right, results->maps.left.disparity_px.view(),
-                            results->maps.right.disparity_px.view(), kViewX, results->view);
+    synthesizer_.synthesize({pair.left, pair.right, results->maps.left.disparity_px.view(),
+                             results->maps.right.disparity_px.view()},
+                            kViewX, results->view);
   }
 
   /// Processes frames one after another, or as many at a time as there are threads.

@@ -49,8 +49,9 @@ class Sweep {
         synthesizer_(SynthesisOptions{}, execution_),
         views_(static_cast<std::size_t>(threads) + 2) {
     fit_ = fit_channels(
-        synthesizer_.intensity_sums(pair.left, pair.right, pair.maps.left.disparity_px.view(),
-                                    pair.maps.right.disparity_px.view(), 0.5),
+        synthesizer_.intensity_sums({pair.left, pair.right, pair.maps.left.disparity_px.view(),
+                                     pair.maps.right.disparity_px.view()},
+                                    0.5),
         pair.left.channels(), 1);
   }
 
@@ -103,8 +104,9 @@ class Sweep {
   void render(int frame, SynthesizedView& view) const {
     ViewPlace place = place_;
     place.position.x = frames_ > 1 ? static_cast<double>(frame) / (frames_ - 1) : 0.5;
-    synthesizer_.synthesize(pair_.left, pair_.right, pair_.maps.left.disparity_px.view(),
-                            pair_.maps.right.disparity_px.view(), place.view(pair_), view, &fit_);
+    synthesizer_.synthesize({pair_.left, pair_.right, pair_.maps.left.disparity_px.view(),
+                             pair_.maps.right.disparity_px.view()},
+                            place.view(pair_), view, &fit_);
   }
 
   const SyntheticPair& pair_;

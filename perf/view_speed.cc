@@ -54,8 +54,9 @@ class Row {
 
   void run(std::size_t which_threads) {
     synthesizers_[which_threads].synthesize(
-        scene_.left, scene_.right, scene_.maps.left.disparity_px.view(),
-        scene_.maps.right.disparity_px.view(), geometry_, view_, fit_ ? &*fit_ : nullptr);
+        {scene_.left, scene_.right, scene_.maps.left.disparity_px.view(),
+         scene_.maps.right.disparity_px.view()},
+        geometry_, view_, fit_ ? &*fit_ : nullptr);
   }
 
   // Times both close together, so that changes of the machine's speed affect both.

@@ -50,8 +50,9 @@ MakeView ours(const SynthesisOptions& options) {
                    Execution& execution) {
     SynthesizedView view;
     ViewSynthesizer(options, execution)
-        .synthesize(pair.left, pair.right, maps.left.disparity_px.view(),
-                    maps.right.disparity_px.view(), view_x, view);
+        .synthesize(
+            {pair.left, pair.right, maps.left.disparity_px.view(), maps.right.disparity_px.view()},
+            view_x, view);
     return std::move(view.image);
   };
 }

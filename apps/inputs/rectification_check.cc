@@ -9,7 +9,6 @@
 
 #include "apps/process/tell.h"
 #include "apps/reports/vertical_error_report.h"
-#include "engine/rectification/row_error_cost.h"
 #include "engine/rectification/vertical_error.h"
 #include "engine/seconds_since.h"
 #include "scheduler/trace.h"

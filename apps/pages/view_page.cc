@@ -79,8 +79,9 @@ SettingValue intensity_of(const PairWithMaps& pair, const SynthesisOptions& opti
   const ViewSynthesizer synthesizer(options, execution);
   // Called even if its result is not used: it checks that the pair and its maps fit together.
   const auto sums =
-      synthesizer.intensity_sums(pair.left, pair.right, pair.maps.left.disparity_px.view(),
-                                 pair.maps.right.disparity_px.view(), 0.5);
+      synthesizer.intensity_sums({pair.left, pair.right, pair.maps.left.disparity_px.view(),
+                                  pair.maps.right.disparity_px.view()},
+                                 0.5);
   if (options.match_intensities) {
     fits = fit_channels(sums, channels, 1);
   }

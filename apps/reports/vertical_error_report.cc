@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/rectification/row_error_cost.h"
+#include "engine/rectification/vertical_error.h"
 
 namespace vantage::apps {
 

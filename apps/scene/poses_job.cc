@@ -20,7 +20,7 @@
 #include "engine/scene_graph/edge_maps.h"
 #include "engine/scene_graph/posed_edges.h"
 #include "engine/sequence/sequence_layout.h"
-#include "engine/view_geometry/colmap_writer.h"
+#include "engine/view_geometry/colmap_model.h"
 #include "engine/view_geometry/intrinsics_file.h"
 
 namespace vantage::apps {

@@ -9,8 +9,8 @@
 #include "apps/inputs/rectification_check.h"
 #include "apps/process/tell.h"
 #include "apps/reports/vertical_error_report.h"
-#include "engine/rectification/row_error_cost.h"
-#include "engine/scene_graph/edge_check.h"
+#include "engine/rectification/vertical_error.h"
+#include "engine/scene_graph/rectified_edge.h"
 
 namespace vantage::apps {
 namespace {

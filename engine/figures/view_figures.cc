@@ -76,8 +76,9 @@ FigureContent make_views(BookImages which, HoleFilling holes, const std::vector<
         continue;
       }
       SynthesizedView view;
-      synthesizer.synthesize(images->left, images->right, maps.left.disparity_px.view(),
-                             maps.right.disparity_px.view(), position, view);
+      synthesizer.synthesize({images->left, images->right, maps.left.disparity_px.view(),
+                              maps.right.disparity_px.view()},
+                             position, view);
       const double holes_percent = 100 * view.hole_fraction;
       (position > 0 && position < 1 ? centre_holes : extreme_holes) =
           std::max(position > 0 && position < 1 ? centre_holes : extreme_holes, holes_percent);

@@ -226,36 +226,34 @@ SceneRendering LayeredScene::render(const PosedCamera& camera, int frame) const 
   Image<std::uint8_t> image(camera.width_px, camera.height_px, 3);
   SceneRendering rendering{
       {}, DisparityMap(camera.width_px, camera.height_px), Mask(camera.width_px, camera.height_px)};
-  execution_->for_each_band(camera.height_px, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      PortableRandom noise(noise_seed, static_cast<std::uint64_t>(y));
-      for (int x = 0; x < camera.width_px; ++x) {
-        const Ray centre_ray = shot.camera().ray_through(x, y);
-        const Hit centre_hit = shot.first_hit(centre_ray, x, y);
-        rendering.disparity.at(x, y) = centre_hit.t == kNoHit
-                                           ? std::numeric_limits<float>::quiet_NaN()
-                                           : static_cast<float>(focal_length_px() / centre_hit.t);
-        rendering.uniform.at(x, y) =
-            centre_hit.t != kNoHit && objects[static_cast<std::size_t>(centre_hit.object)]
-                                          .surface->detail(centre_ray.at(centre_hit.t))
-                                          .is_uniform
-                ? 255
-                : 0;
+  execution_->for_each_row(camera.height_px, [&](int y) {
+    PortableRandom noise(noise_seed, static_cast<std::uint64_t>(y));
+    for (int x = 0; x < camera.width_px; ++x) {
+      const Ray centre_ray = shot.camera().ray_through(x, y);
+      const Hit centre_hit = shot.first_hit(centre_ray, x, y);
+      rendering.disparity.at(x, y) = centre_hit.t == kNoHit
+                                         ? std::numeric_limits<float>::quiet_NaN()
+                                         : static_cast<float>(focal_length_px() / centre_hit.t);
+      rendering.uniform.at(x, y) =
+          centre_hit.t != kNoHit && objects[static_cast<std::size_t>(centre_hit.object)]
+                                        .surface->detail(centre_ray.at(centre_hit.t))
+                                        .is_uniform
+              ? 255
+              : 0;
 
-        Vector3d sum = Vector3d::Zero();
-        for (int j = 0; j < samples; ++j) {
-          for (int i = 0; i < samples; ++i) {
-            sum += colour_at(x + (i + 0.5) / samples - 0.5, y + (j + 0.5) / samples - 0.5);
-          }
+      Vector3d sum = Vector3d::Zero();
+      for (int j = 0; j < samples; ++j) {
+        for (int i = 0; i < samples; ++i) {
+          sum += colour_at(x + (i + 0.5) / samples - 0.5, y + (j + 0.5) / samples - 0.5);
         }
-        const Vector3d colour = gain / (samples * samples) * sum + Vector3d::Constant(offset);
-        for (int c = 0; c < 3; ++c) {
-          const double noisy = options_.noise_sigma > 0
-                                   ? colour[c] + options_.noise_sigma * noise.normal()
-                                   : colour[c];
-          image.at(x, y, c) =
-              static_cast<std::uint8_t>(std::clamp(std::floor(noisy + 0.5), 0.0, 255.0));
-        }
+      }
+      const Vector3d colour = gain / (samples * samples) * sum + Vector3d::Constant(offset);
+      for (int c = 0; c < 3; ++c) {
+        const double noisy = options_.noise_sigma > 0
+                                 ? colour[c] + options_.noise_sigma * noise.normal()
+                                 : colour[c];
+        image.at(x, y, c) =
+            static_cast<std::uint8_t>(std::clamp(std::floor(noisy + 0.5), 0.0, 255.0));
       }
     }
   });
@@ -272,14 +270,12 @@ Mask LayeredScene::occlusion(const PosedCamera& from, const PosedCamera& in, int
   const Shot shot(objects, from);
   const Shot other(objects, in);
   Mask occluded(from.width_px, from.height_px);
-  execution_->for_each_band(from.height_px, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < from.width_px; ++x) {
-        const Ray ray = shot.camera().ray_through(x, y);
-        const Hit hit = shot.first_hit(ray, x, y);
-        const bool is_visible = hit.t != kNoHit && other.sees(ray.at(hit.t));
-        occluded.at(x, y) = is_visible ? 0 : 255;
-      }
+  execution_->for_each_row(from.height_px, [&](int y) {
+    for (int x = 0; x < from.width_px; ++x) {
+      const Ray ray = shot.camera().ray_through(x, y);
+      const Hit hit = shot.first_hit(ray, x, y);
+      const bool is_visible = hit.t != kNoHit && other.sees(ray.at(hit.t));
+      occluded.at(x, y) = is_visible ? 0 : 255;
     }
   });
   return occluded;

@@ -1,12 +1,26 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 
-#include "engine/generation/gradient_noise.h"
 #include "engine/generation/scene_surface.h"
 
 namespace vantage {
+
+/// Smooth 3D noise with a random gradient at each integer lattice point (Perlin), with a period of
+/// 256 units. Mean 0, within about ±1, hardly any power above one cycle per unit. Thread rule:
+/// immutable.
+class GradientNoise {
+ public:
+  explicit GradientNoise(std::uint64_t seed);
+
+  /// |x|, |y|, |z| < 2³⁰.
+  [[nodiscard]] double at(double x, double y, double z) const;
+
+ private:
+  std::array<std::uint8_t, 512> permutation_{};  // of 0..255, repeated
+};
 
 /// Colours of one surface, RGB in grey levels 0..255: noise mixes a with b, and c with d where the
 /// surface's pattern is 1.

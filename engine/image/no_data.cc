@@ -92,11 +92,9 @@ Photograph photograph_without_gaps(ImageView<const float> raster, Execution& exe
   const int height = raster.height();
   Image<std::uint16_t> image(raster.width(), height);
   std::vector<std::uint8_t> is_filled(static_cast<std::size_t>(height));
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      is_filled[static_cast<std::size_t>(y)] =
-          fill_row(raster.row(y), raster.width(), range, image.row(y)) ? 1 : 0;
-    }
+  execution.for_each_row(height, [&](int y) {
+    is_filled[static_cast<std::size_t>(y)] =
+        fill_row(raster.row(y), raster.width(), range, image.row(y)) ? 1 : 0;
   });
   std::vector<int> with_data;
   for (int y = 0; y < height; ++y) {
@@ -124,16 +122,14 @@ void disparities_of_data(const MatchedMap& map, ImageView<const float> left,
     throw Error("rasters and their map differ in size, expected equal sizes");
   }
   disparities_px.resize(width, height);
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const float d = map.disparity_px.at(x, y);
-        const float at = std::round(static_cast<float>(x) - d);  // NaN: in no range
-        const bool has_match = std::isfinite(left.at(x, y)) && map.unmatched.at(x, y) == 0 &&
-                               at >= 0 && at < static_cast<float>(width) &&
-                               std::isfinite(right.at(static_cast<int>(at), y));
-        disparities_px.at(x, y) = has_match ? d : std::numeric_limits<float>::quiet_NaN();
-      }
+  execution.for_each_row(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const float d = map.disparity_px.at(x, y);
+      const float at = std::round(static_cast<float>(x) - d);  // NaN: in no range
+      const bool has_match = std::isfinite(left.at(x, y)) && map.unmatched.at(x, y) == 0 &&
+                             at >= 0 && at < static_cast<float>(width) &&
+                             std::isfinite(right.at(static_cast<int>(at), y));
+      disparities_px.at(x, y) = has_match ? d : std::numeric_limits<float>::quiet_NaN();
     }
   });
 }

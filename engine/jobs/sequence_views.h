@@ -5,7 +5,7 @@
 
 #include "engine/options/pose_file.h"
 #include "engine/options/settings.h"
-#include "engine/view_geometry/view_path.h"
+#include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
 

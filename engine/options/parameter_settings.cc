@@ -14,7 +14,7 @@
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/options/option_texts.h"
-#include "engine/refinement/refinement_fields.h"
+#include "engine/refinement/refinement_options.h"
 
 namespace vantage {
 namespace {

@@ -7,7 +7,6 @@
 #include "engine/options/pose_file.h"
 #include "engine/options/settings.h"
 #include "engine/rectification/rectified_pair.h"
-#include "engine/view_geometry/view_path.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage {

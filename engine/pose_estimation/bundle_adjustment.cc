@@ -7,8 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/pose_estimation/rotation_vector.h"
-#include "engine/rectification/cross_matrix.h"
+#include "engine/rectification/rotations.h"
 
 namespace vantage {
 namespace {

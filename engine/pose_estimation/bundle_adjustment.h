@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "engine/pose_estimation/point_track.h"
+#include "engine/pose_estimation/feature_tracks.h"
 
 namespace vantage {
 

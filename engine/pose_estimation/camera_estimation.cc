@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "engine/error.h"
@@ -16,7 +15,7 @@
 #include "engine/pose_estimation/camera_positions.h"
 #include "engine/pose_estimation/feature_tracks.h"
 #include "engine/pose_estimation/rotation_averaging.h"
-#include "engine/pose_estimation/rotation_vector.h"
+#include "engine/rectification/rotations.h"
 
 namespace vantage {
 namespace {
@@ -300,9 +299,8 @@ void check_pairs(const std::vector<PairGeometry>& pairs, CameraEstimate& estimat
       continue;
     }
     report.off_degrees =
-        rotation_vector(pair.rotation * relative_pose(*first, *second).rotation.transpose())
-            .norm() *
-        180 / std::numbers::pi;
+        degrees(rotation_vector(pair.rotation * relative_pose(*first, *second).rotation.transpose())
+                    .norm());
     if (report.off_degrees > kMaxFinalOffDegrees) {
       report.refusal = fmt::format(
           "its turn is {:.1f} degrees off that of all images together, expected at most {}",

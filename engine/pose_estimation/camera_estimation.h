@@ -7,8 +7,8 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
+#include "engine/pose_estimation/feature_tracks.h"
 #include "engine/pose_estimation/image_pairs.h"
-#include "engine/pose_estimation/point_track.h"
 #include "engine/rectification/camera.h"
 #include "engine/rectification/camera_pose.h"
 

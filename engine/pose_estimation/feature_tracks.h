@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <span>
 #include <vector>
@@ -7,6 +8,19 @@
 #include "engine/pose_estimation/pair_geometry.h"
 
 namespace vantage {
+
+/// Where one image shows a point.
+struct PointSighting {
+  int image = 0;
+  /// From the principal point, in pixels; of a known lens without its distortion, and with fy = fx.
+  Eigen::Vector2d position_px = {0, 0};
+};
+
+/// A point of the scene that several images show, each at most once.
+struct PointTrack {
+  std::vector<PointSighting> sightings;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< in the world, once it is known
+};
 
 /// A feature of an image.
 struct FeatureOfImage {

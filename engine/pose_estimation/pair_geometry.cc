@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
 
 #include "engine/io/images/opencv_setup.h"
 
@@ -29,14 +30,9 @@ PointLists scaled_points(std::span<const PointMatch> matches, double scale) {
   return lists;
 }
 
-/// A matrix of 3 rows.
-Eigen::Matrix<double, 3, Eigen::Dynamic> matrix_of(const cv::Mat& matrix) {
-  Eigen::Matrix<double, 3, Eigen::Dynamic> result(3, matrix.cols);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < matrix.cols; ++column) {
-      result(row, column) = matrix.at<double>(row, column);
-    }
-  }
+Eigen::Matrix3d matrix_of(const cv::Mat& matrix) {
+  Eigen::Matrix3d result;
+  cv::cv2eigen(matrix, result);
   return result;
 }
 
@@ -92,7 +88,8 @@ std::optional<PairGeometry> pair_geometry(std::span<const PointMatch> matches,
       static_cast<double>(pair.inliers.size()) < kMinPairShare * pair.matches) {
     return std::nullopt;
   }
-  const Eigen::Vector3d shift = matrix_of(translation).col(0);
+  Eigen::Vector3d shift;
+  cv::cv2eigen(translation, shift);
   int most_ahead = -1;
   for (const cv::Mat& one : rotations) {
     const Eigen::Matrix3d rotation = matrix_of(one);

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "engine/pose_estimation/rotation_vector.h"
+#include "engine/rectification/rotations.h"
 
 namespace vantage {
 namespace {

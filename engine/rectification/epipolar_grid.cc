@@ -87,39 +87,35 @@ void EpipolarGrid::find_positions(const Rectifier& rectifier, Execution& executi
   const int knot_rows = height_ / kKnotPx + 2;
   knots_.resize(static_cast<std::size_t>(knot_columns_) * static_cast<std::size_t>(knot_rows));
   const Side other = other_side(reference_);
-  execution.for_each_band(knot_rows, [&](int first, int end) {
-    for (int row = first; row < end; ++row) {
-      for (int column = 0; column < knot_columns_; ++column) {
-        knots_[static_cast<std::size_t>(row) * static_cast<std::size_t>(knot_columns_) +
-               static_cast<std::size_t>(column)] =
-            rectifier
-                .source_position(other,
-                                 {first_column_ + kKnotPx * column, first_row_ + kKnotPx * row})
-                .value_or(Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
-      }
+  execution.for_each_row(knot_rows, [&](int row) {
+    for (int column = 0; column < knot_columns_; ++column) {
+      knots_[static_cast<std::size_t>(row) * static_cast<std::size_t>(knot_columns_) +
+             static_cast<std::size_t>(column)] =
+          rectifier
+              .source_position(other,
+                               {first_column_ + kKnotPx * column, first_row_ + kKnotPx * row})
+              .value_or(Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()));
     }
   });
   const int lines = height_ * kPhases;
   const int samples = (width_ - 1) * kPhases + 1;
   seen_.resize(static_cast<std::size_t>(lines));
-  execution.for_each_band(lines, [&](int first, int end) {
-    for (int line = first; line < end; ++line) {
-      const auto is_seen = [&](int sample) {
-        const Eigen::Vector2d at = position_of(line, sample);
-        return at.x() >= -0.5 && at.x() <= reference_width_ - 0.5 && at.y() >= -0.5 &&
-               at.y() <= reference_height_ - 0.5;
-      };
-      int begin = 0;
-      while (begin < samples && !is_seen(begin)) {
-        ++begin;
-      }
-      int last = samples - 1;
-      while (last > begin && !is_seen(last)) {
-        --last;
-      }
-      seen_[static_cast<std::size_t>(line)] =
-          begin < samples ? scheduler::Range{begin, last + 1} : scheduler::Range{0, 0};
+  execution.for_each_row(lines, [&](int line) {
+    const auto is_seen = [&](int sample) {
+      const Eigen::Vector2d at = position_of(line, sample);
+      return at.x() >= -0.5 && at.x() <= reference_width_ - 0.5 && at.y() >= -0.5 &&
+             at.y() <= reference_height_ - 0.5;
+    };
+    int begin = 0;
+    while (begin < samples && !is_seen(begin)) {
+      ++begin;
     }
+    int last = samples - 1;
+    while (last > begin && !is_seen(last)) {
+      --last;
+    }
+    seen_[static_cast<std::size_t>(line)] =
+        begin < samples ? scheduler::Range{begin, last + 1} : scheduler::Range{0, 0};
   });
 }
 

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <opencv2/core.hpp>
+#include <opencv2/core/eigen.hpp>
 
 #include "engine/error.h"
 #include "engine/io/images/opencv_setup.h"
@@ -14,12 +16,8 @@ namespace {
 
 template <typename Matrix>
 cv::Mat to_opencv(const Matrix& matrix) {
-  cv::Mat result(static_cast<int>(matrix.rows()), static_cast<int>(matrix.cols()), CV_64F);
-  for (int row = 0; row < result.rows; ++row) {
-    for (int column = 0; column < result.cols; ++column) {
-      result.at<double>(row, column) = matrix(row, column);
-    }
-  }
+  cv::Mat result;
+  cv::eigen2cv(matrix, result);
   return result;
 }
 

@@ -5,10 +5,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/rectification/rotations.h"
 #include "engine/rectification/shared_window.h"
 
 namespace vantage {
@@ -18,10 +18,6 @@ constexpr double kMaxBaselineAngleDegrees = 45;
 constexpr double kMaxViewingAngleDegrees = 90;
 /// A window that shows less than this share of a camera's height and width is too small.
 constexpr double kMinShare = 0.1;
-
-double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
-}
 
 /// Direction of the right camera, in the left one's frame.
 Eigen::Vector3d baseline_direction(const StereoCalibration& calibration) {
@@ -35,7 +31,8 @@ Eigen::Vector3d mean_x_axis(const StereoCalibration& calibration) {
 
 /// Throws Error unless the cameras are side by side.
 void require_side_by_side(const StereoCalibration& calibration) {
-  const double angle = degrees_between(baseline_direction(calibration), mean_x_axis(calibration));
+  const double angle =
+      degrees(angle_between(baseline_direction(calibration), mean_x_axis(calibration)));
   if (angle >= 180 - kMaxBaselineAngleDegrees) {
     throw Error("the right camera is to the left of the left one, expected the cameras swapped");
   }
@@ -49,7 +46,8 @@ void require_side_by_side(const StereoCalibration& calibration) {
 
 /// Whether the baseline is nearer to the cameras' y axes than to their x axes.
 bool is_upright(const StereoCalibration& calibration) {
-  const double angle = degrees_between(baseline_direction(calibration), mean_x_axis(calibration));
+  const double angle =
+      degrees(angle_between(baseline_direction(calibration), mean_x_axis(calibration)));
   return angle > kMaxBaselineAngleDegrees && angle < 180 - kMaxBaselineAngleDegrees;
 }
 
@@ -60,7 +58,7 @@ Eigen::Matrix3d rectifying_rotation(const StereoCalibration& calibration,
   const Eigen::Vector3d x_axis = baseline_direction(calibration);
   const Eigen::Vector3d mean_view = Eigen::Vector3d::UnitZ() + right_axes.row(2).transpose();
 
-  const double view_angle = degrees_between(Eigen::Vector3d::UnitZ(), right_axes.row(2));
+  const double view_angle = degrees(angle_between(Eigen::Vector3d::UnitZ(), right_axes.row(2)));
   if (!(view_angle <= kMaxViewingAngleDegrees)) {
     throw Error(fmt::format("the cameras' viewing directions are {:.1f} degrees apart, limit {}",
                             view_angle, kMaxViewingAngleDegrees));

@@ -75,4 +75,8 @@ class Rectifier {
   std::array<View, 2> views_;
 };
 
+/// The photograph of the pinhole camera with the same K and size: `source` itself without
+/// distortion, black where the photograph shows nothing. Identical for any `execution`.
+Photograph undistorted(Photograph source, const Camera& lens, Execution& execution);
+
 }  // namespace vantage

@@ -3,18 +3,16 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <opencv2/calib3d.hpp>
 
 #include "engine/error.h"
 #include "engine/io/images/opencv_setup.h"
 #include "engine/order_statistics.h"
-#include "engine/rectification/cross_matrix.h"
+#include "engine/rectification/rotations.h"
 #include "engine/rectification/vertical_error.h"
 
 namespace vantage {
@@ -39,8 +37,6 @@ struct Pose {
   Eigen::Matrix3d rotation;
   Eigen::Vector3d direction;  ///< of the translation; of length 1
 };
-
-double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 std::vector<RayMatch> rays_of(const StereoCalibration& calibration,
                               const std::vector<PointMatch>& matches) {
@@ -85,11 +81,7 @@ Axes axes_of(const Pose& pose) {
 
 /// `pose` turned by two parameters, its direction moved by two.
 Pose moved(const Pose& pose, const Axes& axes, const PoseParameters& by) {
-  const Eigen::Vector3d turn = by[0] * axes.along + by[1] * axes.forward;
-  const double angle = turn.norm();
-  const Eigen::Matrix3d rotation = angle > 0
-                                       ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix()
-                                       : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d rotation = rotation_by(by[0] * axes.along + by[1] * axes.forward);
   const Eigen::Vector3d across = pose.direction.unitOrthogonal();
   const Eigen::Vector3d down = pose.direction.cross(across);
   return {.rotation = rotation * pose.rotation,
@@ -225,8 +217,7 @@ RefinedPose refine_relative_pose(const StereoCalibration& calibration,
   result.calibration.translation = calibration.baseline() * pose.direction;
   const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.rotation * given.rotation.transpose()));
   result.turned_degrees = degrees(std::abs(turn.angle()));
-  result.moved_degrees = degrees(std::atan2(pose.direction.cross(given.direction).norm(),
-                                            pose.direction.dot(given.direction)));
+  result.moved_degrees = degrees(angle_between(pose.direction, given.direction));
   if (result.turned_degrees > kMaxTurn_degrees || result.moved_degrees > kMaxMove_degrees) {
     throw Error(fmt::format(
         "the images show a pose {:.1f} degrees from the given one, with a baseline {:.1f} degrees "

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "engine/rectification/rotations.h"
 #include "scheduler/interruption.h"
 
 namespace vantage {
@@ -115,25 +116,21 @@ RigModel::Cameras RigModel::cameras(const Parameters& parameters) const {
         // Scaled so that curvature in the image does not depend on the focal length.
         .k4 = (value(kDistortion) + sign / 2 * value(kDistortionDifference)) * focal * focal};
   };
-  const Eigen::Vector3d turn(value(kTurnX), value(kTurnY), value(kTurnZ));
-  const double angle = turn.norm();
   const double up = value(kBaselineUp);
   const double forward = value(kBaselineForward);
   return {.left = camera(-1, kLeftCentreX, kLeftCentreY),
           .right = camera(1, kRightCentreX, kRightCentreY),
-          .rotation = Eigen::AngleAxisd(angle, angle > 0 ? Eigen::Vector3d(turn / angle)
-                                                         : Eigen::Vector3d::UnitX())
-                          .toRotationMatrix(),
+          .rotation = rotation_by({value(kTurnX), value(kTurnY), value(kTurnZ)}),
           .translation = {-std::cos(up) * std::cos(forward), -std::sin(up) * std::cos(forward),
                           -std::sin(forward)}};
 }
 
 RigModel::Parameters RigModel::with_pose(const Eigen::Matrix3d& rotation,
                                          const Eigen::Vector3d& translation) {
-  const Eigen::AngleAxisd turn(rotation);
+  const Eigen::Vector3d turn = rotation_vector(rotation);
   Parameters parameters = usual();
   for (int axis = 0; axis < 3; ++axis) {
-    parameters[kTurnX + axis] = turn.angle() * turn.axis()[axis] / kUsual[kTurnX];
+    parameters[kTurnX + axis] = turn[axis] / kUsual[kTurnX];
   }
   const Eigen::Vector3d direction = translation.normalized() * (translation.x() > 0 ? -1.0 : 1.0);
   parameters[kBaselineUp] = std::atan2(-direction.y(), -direction.x()) / kUsual[kBaselineUp];

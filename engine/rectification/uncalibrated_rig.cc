@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
 
 #include "engine/error.h"
 #include "engine/io/images/opencv_setup.h"
@@ -66,11 +67,7 @@ RobustFundamental robust_fundamental(const std::vector<PointMatch>& matches, dou
   if (matrix.rows != 3 || matrix.cols != 3 || is_near.size() != matches.size()) {
     return result;
   }
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      result.matrix(row, column) = matrix.at<double>(row, column);
-    }
-  }
+  cv::cv2eigen(matrix, result.matrix);
   for (std::size_t i = 0; i < is_near.size(); ++i) {
     result.weights[static_cast<Eigen::Index>(i)] = is_near[i] != 0 ? 1 : 0;
   }

@@ -49,4 +49,15 @@ VerticalError measure_vertical_error(const Photograph& left, const Photograph& r
 /// time of measure_vertical_error(). None if there are too few matches.
 std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right);
 
+// What it costs that rows do not correspond. Thread rule: pure.
+
+/// The additional percentage of pixels that are wrong by more than a pixel with this row error,
+/// interpolated from measurements (see the .cc file).
+double more_bad_percent(double rows_off_px);
+/// The percentage above which a warning is printed.
+inline constexpr double kMaxMoreBad_percent = 5;
+
+/// Whether the row error is too small to matter for matching.
+bool is_rectified(const VerticalError& error);
+
 }  // namespace vantage

@@ -87,30 +87,22 @@ void find_edges(const Photograph& photograph, Execution& execution, EdgeSnapping
   work.gradient_x.resize(width, height);
   work.gradient_y.resize(width, height);
   work.edges.resize(width, height);
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      float* grey = work.grey.row(y) + kRadius;
-      intensity_row(photograph, y, grey);
-      smooth_along_row(grey, kernel, width, work.smooth_x.row(y));
-    }
+  execution.for_each_row(height, [&](int y) {
+    float* grey = work.grey.row(y) + kRadius;
+    intensity_row(photograph, y, grey);
+    smooth_along_row(grey, kernel, width, work.smooth_x.row(y));
   });
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      smooth_across_rows(work.smooth_x, y, kernel, work.grey.row(y));
-    }
-  });
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      const float* row = work.grey.row(y);
-      const float* above = work.grey.row(std::max(y - 1, 0));
-      const float* below = work.grey.row(std::min(y + 1, height - 1));
-      std::int16_t* gradient_x = work.gradient_x.row(y);
-      std::int16_t* gradient_y = work.gradient_y.row(y);
-      for (int x = 0; x < width; ++x) {
-        gradient_x[x] =
-            central_difference(row[std::max(x - 1, 0)], row[std::min(x + 1, width - 1)]);
-        gradient_y[x] = central_difference(above[x], below[x]);
-      }
+  execution.for_each_row(
+      height, [&](int y) { smooth_across_rows(work.smooth_x, y, kernel, work.grey.row(y)); });
+  execution.for_each_row(height, [&](int y) {
+    const float* row = work.grey.row(y);
+    const float* above = work.grey.row(std::max(y - 1, 0));
+    const float* below = work.grey.row(std::min(y + 1, height - 1));
+    std::int16_t* gradient_x = work.gradient_x.row(y);
+    std::int16_t* gradient_y = work.gradient_y.row(y);
+    for (int x = 0; x < width; ++x) {
+      gradient_x[x] = central_difference(row[std::max(x - 1, 0)], row[std::min(x + 1, width - 1)]);
+      gradient_y[x] = central_difference(above[x], below[x]);
     }
   });
   prepare_opencv();
@@ -121,10 +113,8 @@ void find_edges(const Photograph& photograph, Execution& execution, EdgeSnapping
 
 void snap_discontinuities(const Mask& edges, int max_px, Execution& execution,
                           DisparityMap& map_px) {
-  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      kernels::snap_discontinuities_row(edges.row(y), max_px, map_px.width(), map_px.row(y));
-    }
+  execution.for_each_row(map_px.height(), [&](int y) {
+    kernels::snap_discontinuities_row(edges.row(y), max_px, map_px.width(), map_px.row(y));
   });
 }
 

@@ -34,19 +34,17 @@ template <typename T, class WriteRow>
 void frame(int width, int height, int channels, T outside, const WriteRow& write_row,
            Execution& execution, Image<T>& framed) {
   framed.resize(kMarginPx + width + kMarginPx, kReachPx + height + kReachPx, channels);
-  execution.for_each_band(framed.height(), [&](int first_row, int end_row) {
-    for (int row = first_row; row < end_row; ++row) {
-      T* const values = framed.row(row);
-      T* const end = values + framed.width() * channels;
-      const int y = row - kReachPx;
-      if (y < 0 || y >= height) {
-        std::fill(values, end, outside);
-        continue;
-      }
-      std::fill_n(values, kMarginPx * channels, outside);
-      write_row(y, values + kMarginPx * channels);
-      std::fill(values + (kMarginPx + width) * channels, end, outside);
+  execution.for_each_row(framed.height(), [&](int row) {
+    T* const values = framed.row(row);
+    T* const end = values + framed.width() * channels;
+    const int y = row - kReachPx;
+    if (y < 0 || y >= height) {
+      std::fill(values, end, outside);
+      return;
     }
+    std::fill_n(values, kMarginPx * channels, outside);
+    write_row(y, values + kMarginPx * channels);
+    std::fill(values + (kMarginPx + width) * channels, end, outside);
   });
 }
 
@@ -109,20 +107,18 @@ void take_filled_medians(const Mask& unmatched, const Photograph& photograph,
             execution, work.pixels);
       },
       photograph.pixels);
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
-        kernels::take_filled_medians_row(
-            {.disparity_px = inside(work.before, y) + columns.begin,
-             .disparity_pitch = static_cast<std::ptrdiff_t>(work.before.view().stride()),
-             .pixels = inside(work.pixels, y) + columns.begin * kernels::kFilledPixelBytes,
-             .pixel_pitch = static_cast<std::ptrdiff_t>(work.pixels.view().stride()),
-             .unmatched = unmatched.row(y) + columns.begin,
-             .width = columns.size(),
-             .grid = grid},
-            map_px.row(y) + columns.begin);
-      });
-    }
+  execution.for_each_row(height, [&](int y) {
+    for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
+      kernels::take_filled_medians_row(
+          {.disparity_px = inside(work.before, y) + columns.begin,
+           .disparity_pitch = static_cast<std::ptrdiff_t>(work.before.view().stride()),
+           .pixels = inside(work.pixels, y) + columns.begin * kernels::kFilledPixelBytes,
+           .pixel_pitch = static_cast<std::ptrdiff_t>(work.pixels.view().stride()),
+           .unmatched = unmatched.row(y) + columns.begin,
+           .width = columns.size(),
+           .grid = grid},
+          map_px.row(y) + columns.begin);
+    });
   });
 }
 

@@ -43,12 +43,10 @@ void check_against_partners(const MapToRefine& to_refine, double tolerance_px, E
     if (is_first) {
       continue;
     }
-    execution.for_each_band(unmatched.height(), [&](int first_row, int end_row) {
-      for (int y = first_row; y < end_row; ++y) {
-        std::uint8_t* const of_all = map.unmatched.row(y);
-        std::transform(of_all, of_all + unmatched.width(), unmatched.row(y), of_all,
-                       [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); });
-      }
+    execution.for_each_row(unmatched.height(), [&](int y) {
+      std::uint8_t* const of_all = map.unmatched.row(y);
+      std::transform(of_all, of_all + unmatched.width(), unmatched.row(y), of_all,
+                     [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); });
     });
   }
 }

@@ -44,12 +44,10 @@ bool agrees(const DisplacementView& own, const DisplacementView& other, int dire
 
 /// Makes unmatched pixels unknown.
 void erase_unmatched(const Mask& unmatched, Execution& execution, DisparityMap& map_px) {
-  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < map_px.width(); ++x) {
-        if (unmatched.at(x, y) != 0) {
-          map_px.at(x, y) = std::numeric_limits<float>::quiet_NaN();
-        }
+  execution.for_each_row(map_px.height(), [&](int y) {
+    for (int x = 0; x < map_px.width(); ++x) {
+      if (unmatched.at(x, y) != 0) {
+        map_px.at(x, y) = std::numeric_limits<float>::quiet_NaN();
       }
     }
   });
@@ -60,62 +58,52 @@ void erase_unmatched(const Mask& unmatched, Execution& execution, DisparityMap& 
 void cross_check(ImageView<const float> map_px, ImageView<const float> other_px, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched, float columns_per_px) {
   unmatched.resize(map_px.width(), map_px.height());
-  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      kernels::cross_check_row(
-          row_to_check(map_px, y, side, tolerance_px, columns_per_px, unmatched), other_px.row(y));
-    }
+  execution.for_each_row(map_px.height(), [&](int y) {
+    kernels::cross_check_row(row_to_check(map_px, y, side, tolerance_px, columns_per_px, unmatched),
+                             other_px.row(y));
   });
 }
 
 void cross_check(ImageView<const float> map_px, const CoarseWinners& other, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched) {
   unmatched.resize(map_px.width(), map_px.height());
-  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      kernels::cross_check_winners_row(
-          row_to_check(map_px, y, side, tolerance_px, 1, unmatched),
-          {.winners = other.winners.row(y >> other.level),
-           .level = other.level,
-           .disparity_min = other.disparity_min,
-           .px_per_candidate = 1.0F / static_cast<float>(other.steps_per_px)});
-    }
+  execution.for_each_row(map_px.height(), [&](int y) {
+    kernels::cross_check_winners_row(
+        row_to_check(map_px, y, side, tolerance_px, 1, unmatched),
+        {.winners = other.winners.row(y >> other.level),
+         .level = other.level,
+         .disparity_min = other.disparity_min,
+         .px_per_candidate = 1.0F / static_cast<float>(other.steps_per_px)});
   });
 }
 
 void cross_check(const DisplacementView& map, const DisplacementView& other, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched) {
   unmatched.resize(map.x_px.width(), map.x_px.height());
-  execution.for_each_band(map.x_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < map.x_px.width(); ++x) {
-        unmatched.at(x, y) = agrees(map, other, direction_of(side), tolerance_px, x, y) ? 0 : 255;
-      }
+  execution.for_each_row(map.x_px.height(), [&](int y) {
+    for (int x = 0; x < map.x_px.width(); ++x) {
+      unmatched.at(x, y) = agrees(map, other, direction_of(side), tolerance_px, x, y) ? 0 : 255;
     }
   });
 }
 
 void mark_unknown(ImageView<const float> map_px, Execution& execution, Mask& unknown) {
   unknown.resize(map_px.width(), map_px.height());
-  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      const float* values = map_px.row(y);
-      std::uint8_t* is_unknown = unknown.row(y);
-      for (int x = 0; x < map_px.width(); ++x) {
-        is_unknown[x] = std::isnan(values[x]) ? 255 : 0;
-      }
+  execution.for_each_row(map_px.height(), [&](int y) {
+    const float* values = map_px.row(y);
+    std::uint8_t* is_unknown = unknown.row(y);
+    for (int x = 0; x < map_px.width(); ++x) {
+      is_unknown[x] = std::isnan(values[x]) ? 255 : 0;
     }
   });
 }
 
 void mark_unsure(ImageView<const float> confidence, double threshold, Execution& execution,
                  Mask& unmatched) {
-  execution.for_each_band(confidence.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < confidence.width(); ++x) {
-        if (!(confidence.at(x, y) > threshold)) {  // true for NaN
-          unmatched.at(x, y) = 255;
-        }
+  execution.for_each_row(confidence.height(), [&](int y) {
+    for (int x = 0; x < confidence.width(); ++x) {
+      if (!(confidence.at(x, y) > threshold)) {  // true for NaN
+        unmatched.at(x, y) = 255;
       }
     }
   });
@@ -131,16 +119,13 @@ void fill_unmatched(const Mask& unmatched, Side side, Fill fill, Execution& exec
   const auto background =
       side == Side::kLeft ? kernels::BackgroundSide::kLeft : kernels::BackgroundSide::kRight;
   std::vector<char> has_match(static_cast<std::size_t>(height));
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      const std::uint8_t* mask = unmatched.row(y);
-      float* row = map_px.row(y);
-      has_match[static_cast<std::size_t>(y)] =
-          fill == Fill::kLinear
-              ? kernels::fill_unmatched_row_linearly(mask, background, kFillSurfaceStepPx,
-                                                     map_px.width(), row)
-              : kernels::fill_unmatched_row(mask, background, map_px.width(), row);
-    }
+  execution.for_each_row(height, [&](int y) {
+    const std::uint8_t* mask = unmatched.row(y);
+    float* row = map_px.row(y);
+    has_match[static_cast<std::size_t>(y)] =
+        fill == Fill::kLinear ? kernels::fill_unmatched_row_linearly(
+                                    mask, background, kFillSurfaceStepPx, map_px.width(), row)
+                              : kernels::fill_unmatched_row(mask, background, map_px.width(), row);
   });
 
   int above = -1;  // last row with a match

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cmath>
+#include <concepts>
 #include <limits>
+#include <string_view>
 #include <type_traits>
 
 #include "engine/option_field.h"
@@ -22,7 +25,7 @@ inline constexpr double kNoConfidenceThreshold = -std::numeric_limits<double>::i
 
 /// Refinement steps after the selection of winners (EQUATIONS §5), in processing order. Field =
 /// std::optional: what a user sets; Field = std::type_identity_t: the values in force. Every field
-/// must also be listed in visit_fields() (refinement_fields.h); a missing one does not compile.
+/// must also be listed in visit_fields(); a missing one does not compile.
 template <template <typename> class Field>
 struct RefinementOptionsOf {
   /// Moves discontinuities to intensity edges at most this far away; 0: off; 0..16.
@@ -64,6 +67,43 @@ inline bool uses_confidence(const RefinementOptions& refinement) {
 /// Whether uniform regions are filled otherwise than other unmatched pixels.
 inline bool fills_uniform_regions(Fill fill) {
   return fill == Fill::kCanonical || fill == Fill::kThinPlate;
+}
+
+/// Description of a field of RefinementOptions.
+struct RefinementField {
+  std::string_view option;  ///< name on the command line, in files and in messages
+  Limits limits = {};
+};
+
+template <typename T>
+concept AnyRefinementOptions = std::same_as<std::remove_const_t<T>, RefinementOverrides> ||
+    std::same_as<std::remove_const_t<T>, RefinementOptions>;
+
+/// Calls visit(RefinementField, options.field...) for every field, in the order of the options.
+template <typename Visit, AnyRefinementOptions... Options>
+constexpr void visit_fields(const Visit& visit, Options&... options) {
+  using Field = RefinementField;
+  constexpr Limits kRadius = {is_within<0, 16>, "a number of pixels from 0 to 16"};
+  constexpr Limits kAgreement = {[](double v) { return v >= 1 && std::isfinite(v); },
+                                 "a number of at least 1"};
+  constexpr Limits kThreshold = {
+      [](double v) { return v < std::numeric_limits<double>::infinity(); }, "a finite number"};
+  constexpr Limits kContrast = {[](double v) { return v >= 0 && std::isfinite(v); },
+                                "a number of grey levels, at least 0"};
+  constexpr Limits kSize = {[](double v) { return v >= 0; }, "a number of pixels, at least 0"};
+
+  visit(Field{"edge-snapping", kRadius}, options.edge_snapping_px...);
+  // One option sets two fields, the number first: a number, or no check.
+  visit(Field{"cross-check", kAgreement}, options.cross_check_px...);
+  visit(Field{"cross-check"}, options.cross_check...);
+  visit(Field{"cross-check-level", {is_within<0, 9>, "a level from 0 to 9"}},
+        options.cross_check_level...);
+  visit(Field{"confidence-threshold", kThreshold}, options.confidence_threshold...);
+  visit(Field{"speckle-size", kSize}, options.speckle_size_px...);
+  visit(Field{"surface-fit", kRadius}, options.surface_fit_px...);
+  visit(Field{"surface-fit-step", {is_within<1, 2>, "1 or 2"}}, options.surface_fit_step_px...);
+  visit(Field{"fill"}, options.fill...);
+  visit(Field{"uniform-contrast", kContrast}, options.uniform_contrast...);
 }
 
 }  // namespace vantage

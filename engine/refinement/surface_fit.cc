@@ -16,18 +16,16 @@ void fill_with_margins(int width, int height, int margin, Execution& execution,
                        Image<std::int16_t>& samples, const Fill& fill) {
   const int after = margin + kernels::kSurfaceRowSlack;
   samples.resize(margin + width + after, margin + height + margin);
-  execution.for_each_band(samples.height(), [&](int first_row, int end_row) {
-    for (int row = first_row; row < end_row; ++row) {
-      std::int16_t* values = samples.row(row);
-      const int y = row - margin;
-      if (y < 0 || y >= height) {
-        std::fill_n(values, samples.width(), kernels::kNoSurface);
-        continue;
-      }
-      std::fill_n(values, margin, kernels::kNoSurface);
-      fill(y, values + margin);
-      std::fill_n(values + margin + width, after, kernels::kNoSurface);
+  execution.for_each_row(samples.height(), [&](int row) {
+    std::int16_t* values = samples.row(row);
+    const int y = row - margin;
+    if (y < 0 || y >= height) {
+      std::fill_n(values, samples.width(), kernels::kNoSurface);
+      return;
     }
+    std::fill_n(values, margin, kernels::kNoSurface);
+    fill(y, values + margin);
+    std::fill_n(values + margin + width, after, kernels::kNoSurface);
   });
 }
 
@@ -53,17 +51,15 @@ void fit_each_pixel(const Mask& unmatched, int radius_px, DisparityRange search,
       width, map_px.height(), radius_px, execution, work.samples, [&](int y, std::int16_t* values) {
         kernels::surface_sample_row(map_px.row(y), unmatched.row(y), width, format, values);
       });
-  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      kernels::SurfaceRow row =
-          surface_row(work.samples, radius_px, y, format, radius_px, width, search);
-      const std::int16_t* const samples = row.samples;
-      for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
-        row.samples = samples + columns.begin;
-        row.width = columns.size();
-        kernels::fit_surface_row(row, map_px.row(y) + columns.begin);
-      });
-    }
+  execution.for_each_row(map_px.height(), [&](int y) {
+    kernels::SurfaceRow row =
+        surface_row(work.samples, radius_px, y, format, radius_px, width, search);
+    const std::int16_t* const samples = row.samples;
+    for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
+      row.samples = samples + columns.begin;
+      row.width = columns.size();
+      kernels::fit_surface_row(row, map_px.row(y) + columns.begin);
+    });
   });
 }
 
@@ -89,18 +85,16 @@ void fit_each_block(const Mask& unmatched, int radius_px, DisparityRange search,
                     [&](int row, std::int16_t* values) {
                       kernels::surface_block_row(pixels(row), format, values);
                     });
-  execution.for_each_band(rows, [&](int first_row, int end_row) {
-    for (int row = first_row; row < end_row; ++row) {
-      const kernels::SurfaceRow blocks =
-          surface_row(work.samples, margin, row, format, radius_px, columns, search);
-      const kernels::SurfaceBlockRow of_row = pixels(row);
-      for_each_run_in_row(tiles, map_px.width(), 2 * row, [&](scheduler::Range run) {
-        kernels::SurfaceRow of_run = blocks;
-        of_run.samples += run.begin / 2;
-        kernels::fit_surface_block_row(
-            of_run, of_row.from_block(run.begin / 2, kernels::surface_blocks(run.size())));
-      });
-    }
+  execution.for_each_row(rows, [&](int row) {
+    const kernels::SurfaceRow blocks =
+        surface_row(work.samples, margin, row, format, radius_px, columns, search);
+    const kernels::SurfaceBlockRow of_row = pixels(row);
+    for_each_run_in_row(tiles, map_px.width(), 2 * row, [&](scheduler::Range run) {
+      kernels::SurfaceRow of_run = blocks;
+      of_run.samples += run.begin / 2;
+      kernels::fit_surface_block_row(
+          of_run, of_row.from_block(run.begin / 2, kernels::surface_blocks(run.size())));
+    });
   });
 }
 

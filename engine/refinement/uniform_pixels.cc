@@ -157,12 +157,10 @@ void find_textureless_pixels(const Photograph& photograph, double contrast, Exec
 
 void keep_visible_unmatched(ImageView<const float> map_px, const Mask& unmatched, Side side,
                             int pixels_per_column, Execution& execution, Mask& uniform) {
-  execution.for_each_band(map_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      VisibleRow(map_px.row(y), unmatched.row(y), map_px.width(), side,
-                 static_cast<float>(pixels_per_column))
-          .keep_visible(uniform.row(y));
-    }
+  execution.for_each_row(map_px.height(), [&](int y) {
+    VisibleRow(map_px.row(y), unmatched.row(y), map_px.width(), side,
+               static_cast<float>(pixels_per_column))
+        .keep_visible(uniform.row(y));
   });
 }
 

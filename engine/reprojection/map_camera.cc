@@ -41,12 +41,10 @@ MapCamera in_world(const MapCamera& camera, const Eigen::Matrix3d& rotation,
 void depth_map(ImageView<const float> disparity_px, const DepthScale& scale, double max_depth,
                Execution& execution, Image<float>& depths) {
   depths.resize(disparity_px.width(), disparity_px.height());
-  execution.for_each_band(disparity_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < disparity_px.width(); ++x) {
-        const auto value = depth_within(scale, disparity_px.at(x, y), max_depth);
-        depths.at(x, y) = value ? static_cast<float>(*value) : kUnknown;
-      }
+  execution.for_each_row(disparity_px.height(), [&](int y) {
+    for (int x = 0; x < disparity_px.width(); ++x) {
+      const auto value = depth_within(scale, disparity_px.at(x, y), max_depth);
+      depths.at(x, y) = value ? static_cast<float>(*value) : kUnknown;
     }
   });
 }
@@ -55,15 +53,13 @@ void reproject(ImageView<const float> disparity_px, const MapCamera& camera, dou
                Execution& execution, Image<float>& points) {
   points.resize(disparity_px.width(), disparity_px.height(), 3);
   const Eigen::Matrix3d ray_from_pixel = camera.rotation * camera.matrix.inverse();
-  execution.for_each_band(disparity_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < disparity_px.width(); ++x) {
-        const auto value = depth_within(camera.scale, disparity_px.at(x, y), max_depth);
-        const Eigen::Vector3d point =
-            ray_from_pixel * Eigen::Vector3d(x, y, 1) * value.value_or(0) + camera.centre;
-        for (int axis = 0; axis < 3; ++axis) {
-          points.at(x, y, axis) = value ? static_cast<float>(point[axis]) : kUnknown;
-        }
+  execution.for_each_row(disparity_px.height(), [&](int y) {
+    for (int x = 0; x < disparity_px.width(); ++x) {
+      const auto value = depth_within(camera.scale, disparity_px.at(x, y), max_depth);
+      const Eigen::Vector3d point =
+          ray_from_pixel * Eigen::Vector3d(x, y, 1) * value.value_or(0) + camera.centre;
+      for (int axis = 0; axis < 3; ++axis) {
+        points.at(x, y, axis) = value ? static_cast<float>(point[axis]) : kUnknown;
       }
     }
   });

@@ -131,16 +131,14 @@ void outline_mask(ImageView<const float> disparity_px, double gradient_limit_px,
   const int height = disparity_px.height();
   const auto limit_px = static_cast<float>(gradient_limit_px);
   outlines.resize(width, height);
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const float here = disparity_px.at(x, y);
-        const bool ends = (x > 0 && jumps(here, disparity_px.at(x - 1, y), limit_px)) ||
-                          (x + 1 < width && jumps(here, disparity_px.at(x + 1, y), limit_px)) ||
-                          (y > 0 && jumps(here, disparity_px.at(x, y - 1), limit_px)) ||
-                          (y + 1 < height && jumps(here, disparity_px.at(x, y + 1), limit_px));
-        outlines.at(x, y) = ends ? 255 : 0;
-      }
+  execution.for_each_row(height, [&](int y) {
+    for (int x = 0; x < width; ++x) {
+      const float here = disparity_px.at(x, y);
+      const bool ends = (x > 0 && jumps(here, disparity_px.at(x - 1, y), limit_px)) ||
+                        (x + 1 < width && jumps(here, disparity_px.at(x + 1, y), limit_px)) ||
+                        (y > 0 && jumps(here, disparity_px.at(x, y - 1), limit_px)) ||
+                        (y + 1 < height && jumps(here, disparity_px.at(x, y + 1), limit_px));
+      outlines.at(x, y) = ends ? 255 : 0;
     }
   });
 }

@@ -25,4 +25,9 @@ inline Eigen::Vector3d projected(const ViewWarp& to_other, double x, double y, d
 /// the surface around a pixel (x₀, y₀), whose disparity is known.
 Eigen::Vector3d plane_around(const DisparityMap& map, int x0, int y0);
 
+/// The disparity at a position within a map, in pixels from the centre of its first one: bilinear
+/// among four pixels that differ by at most 1 px, else that of the nearest. NaN = unknown. Thread
+/// rule: pure.
+float interpolated_disparity(ImageView<const float> map, double x, double y);
+
 }  // namespace vantage

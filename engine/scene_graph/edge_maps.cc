@@ -13,7 +13,6 @@
 #include "engine/io/images/photograph_io.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/scene_graph/edge_check.h"
 #include "engine/scene_graph/posed_edges.h"
 #include "engine/scene_graph/rectified_edge.h"
 #include "engine/scene_graph/sheared_images.h"

@@ -33,7 +33,7 @@ struct SceneBuildOptions {
   /// Copies the images into the folder, which then depends on nothing else.
   bool copy_images = false;
   /// Refuses edges whose rows or columns do not correspond, or of which few pixels match
-  /// (edge_check.h).
+  /// (rectified_edge.h).
   bool check_rectification = true;
   /// Neighbours that every posed camera is joined to, 1 to kMaxNeighbours.
   int neighbours = 4;

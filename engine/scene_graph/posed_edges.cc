@@ -13,7 +13,7 @@
 #include "engine/error.h"
 #include "engine/order_statistics.h"
 #include "engine/rectification/rectified_pair.h"
-#include "engine/view_geometry/angle_between.h"
+#include "engine/rectification/rotations.h"
 
 namespace vantage {
 namespace {

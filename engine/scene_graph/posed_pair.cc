@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/scene_graph/interpolated_disparity.h"
+#include "engine/scene_graph/cloud_geometry.h"
 
 namespace vantage {
 namespace {
@@ -63,25 +63,23 @@ MatchedMap PosedPair::on_photograph(Side side, const MatchedMap& map, double sca
   MatchedMap result;
   result.disparity_px.resize(width_px_, height_px_);
   result.unmatched.resize(width_px_, height_px_);
-  execution_->for_each_band(height_px_, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < width_px_; ++x) {
-        float& disparity_px = result.disparity_px.at(x, y);
-        std::uint8_t& unmatched = result.unmatched.at(x, y);
-        disparity_px = kUnknown;
-        unmatched = 255;
-        const Eigen::Vector3d ray = ray_of * Eigen::Vector3d(x, y, 1);
-        const Eigen::Vector2d at = (camera.matrix * ray).hnormalized();
-        if (!(ray.z() > 0 && at.x() >= 0 && at.x() <= pair.width_px - 1 && at.y() >= 0 &&
-              at.y() <= pair.height_px - 1)) {
-          continue;
-        }
-        const float d = interpolated_disparity(map.disparity_px.view(), at.x(), at.y());
-        if (std::isfinite(d)) {
-          disparity_px = static_cast<float>(std::max(double{d}, 0.0) * ray.z() * scale);
-          unmatched =
-              map.unmatched.at(static_cast<int>(at.x() + 0.5), static_cast<int>(at.y() + 0.5));
-        }
+  execution_->for_each_row(height_px_, [&](int y) {
+    for (int x = 0; x < width_px_; ++x) {
+      float& disparity_px = result.disparity_px.at(x, y);
+      std::uint8_t& unmatched = result.unmatched.at(x, y);
+      disparity_px = kUnknown;
+      unmatched = 255;
+      const Eigen::Vector3d ray = ray_of * Eigen::Vector3d(x, y, 1);
+      const Eigen::Vector2d at = (camera.matrix * ray).hnormalized();
+      if (!(ray.z() > 0 && at.x() >= 0 && at.x() <= pair.width_px - 1 && at.y() >= 0 &&
+            at.y() <= pair.height_px - 1)) {
+        continue;
+      }
+      const float d = interpolated_disparity(map.disparity_px.view(), at.x(), at.y());
+      if (std::isfinite(d)) {
+        disparity_px = static_cast<float>(std::max(double{d}, 0.0) * ray.z() * scale);
+        unmatched =
+            map.unmatched.at(static_cast<int>(at.x() + 0.5), static_cast<int>(at.y() + 0.5));
       }
     }
   });

@@ -10,10 +10,10 @@
 
 #include "engine/error.h"
 #include "engine/order_statistics.h"
-#include "engine/rectification/undistorted_photograph.h"
+#include "engine/rectification/rectifier.h"
+#include "engine/rectification/rotations.h"
 #include "engine/scene_graph/fused_map.h"
 #include "engine/scene_graph/scene_view_options.h"
-#include "engine/view_geometry/angle_between.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
@@ -21,7 +21,6 @@ namespace {
 
 constexpr double kMaxTurnOfSource = std::numbers::pi / 3;
 constexpr double kMinShare = 1e-3;
-constexpr std::size_t kMaxLoadedPhotographs = 4 * kMaxViewSources;
 
 /// Median over the edges of the depth in the middle of the disparities that were searched.
 double typical_depth_of(const StoredScene& scene) {
@@ -124,17 +123,7 @@ std::shared_ptr<const PosedVertex> PosedViewer::make_vertex(int number) {
 }
 
 std::shared_ptr<const PosedVertex> PosedViewer::vertex(int number) {
-  const auto found = std::find_if(loaded_.begin(), loaded_.end(),
-                                  [&](const Loaded& loaded) { return loaded.number == number; });
-  if (found != loaded_.end()) {
-    loaded_.splice(loaded_.begin(), loaded_, found);
-  } else {
-    loaded_.push_front({number, make_vertex(number)});
-    if (loaded_.size() > kMaxLoadedPhotographs) {
-      loaded_.pop_back();
-    }
-  }
-  return loaded_.front().vertex;
+  return loaded_.get(number, [&] { return make_vertex(number); });
 }
 
 void PosedViewer::load(const PosedCamera& camera) {
@@ -162,8 +151,9 @@ const std::array<IntensityFit, 4>& PosedViewer::fit(const PreparedPosedView::Sou
     view.from_right = warp_from(other.vertex, camera);
     const Photograph& image = first.loaded->image;
     found->second = fit_channels(
-        synthesizer_.intensity_sums(image, other.loaded->image, first.loaded->disparity_px.view(),
-                                    other.loaded->disparity_px.view(), view),
+        synthesizer_.intensity_sums({image, other.loaded->image, first.loaded->disparity_px.view(),
+                                     other.loaded->disparity_px.view()},
+                                    view),
         image.channels(), 1);
   }
   return found->second;

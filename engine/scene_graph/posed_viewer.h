@@ -2,7 +2,6 @@
 
 #include <array>
 #include <functional>
-#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
+#include "engine/scene_graph/recently_used.h"
 #include "engine/scene_graph/scene_camera.h"
 #include "engine/scene_graph/scene_viewer.h"
 #include "engine/scene_graph/stored_scene.h"
@@ -74,10 +74,6 @@ class PosedViewer {
   void render(const PreparedPosedView& prepared, SynthesizedView& view) const;
 
  private:
-  struct Loaded {
-    int number = 0;
-    std::shared_ptr<const PosedVertex> vertex;
-  };
   [[nodiscard]] std::vector<std::pair<int, double>> sources_of(const PosedCamera& camera) const;
   [[nodiscard]] ViewWarp warp_from(int vertex, const PosedCamera& camera) const;
   std::shared_ptr<const PosedVertex> vertex(int number);
@@ -96,7 +92,7 @@ class PosedViewer {
   Execution& execution_;
   ViewSynthesizer synthesizer_;  // for regressions
   BlendedSynthesizer blended_;
-  std::list<Loaded> loaded_;  // most recently used first
+  RecentlyUsed<int, std::shared_ptr<const PosedVertex>> loaded_{std::size_t{4} * kMaxViewSources};
   std::map<std::pair<int, int>, std::array<IntensityFit, 4>> fits_;
 };
 

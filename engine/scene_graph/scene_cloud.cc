@@ -14,10 +14,9 @@
 
 #include "engine/error.h"
 #include "engine/image/eight_bit.h"
-#include "engine/rectification/undistorted_photograph.h"
+#include "engine/rectification/rectifier.h"
 #include "engine/scene_graph/cloud_geometry.h"
 #include "engine/scene_graph/fused_map.h"
-#include "engine/scene_graph/interpolated_disparity.h"
 #include "engine/scene_graph/posed_edges.h"
 #include "engine/scene_graph/scene_camera.h"
 
@@ -35,12 +34,10 @@ struct CloudImage {
 
 /// Disparities become unknown where `mask` is not 0.
 void forget_where(const Mask& mask, DisparityMap& disparity_px, Execution& execution) {
-  execution.for_each_band(disparity_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < disparity_px.width(); ++x) {
-        if (mask.at(x, y) != 0) {
-          disparity_px.at(x, y) = kUnknownDisparity;
-        }
+  execution.for_each_row(disparity_px.height(), [&](int y) {
+    for (int x = 0; x < disparity_px.width(); ++x) {
+      if (mask.at(x, y) != 0) {
+        disparity_px.at(x, y) = kUnknownDisparity;
       }
     }
   });
@@ -132,11 +129,7 @@ struct SceneCloudMaker::Content {
     }
     Image<float> depths(width_px_, height_px_);  // of the points, NaN where there is none
     image.kept.resize(width_px_, height_px_);
-    execution_.for_each_band(height_px_, [&](int first_row, int end_row) {
-      for (int y = first_row; y < end_row; ++y) {
-        decide_row(y, neighbours, image, depths);
-      }
-    });
+    execution_.for_each_row(height_px_, [&](int y) { decide_row(y, neighbours, image, depths); });
     append(number, image, depths);
     is_made_[static_cast<std::size_t>(number)] = true;
     release();

@@ -16,10 +16,6 @@ namespace vantage {
 namespace {
 
 constexpr double kSameDirection = 1e-9;  // of an edge
-// Objects kept in addition to those of views in progress: vertices, of which a stereo view needs up
-// to six, and sources.
-constexpr std::size_t kMaxLoaded = 8;
-constexpr std::size_t kMaxSources = 2;
 
 std::vector<int> vertices_of(const ScenePlace& place) {
   return {place.vertices.begin(), place.vertices.begin() + place.count};
@@ -77,19 +73,9 @@ void SceneViewer::require_near(ScenePosition position) const {
   }
 }
 
-// A reference is valid until kMaxLoaded others have been requested.
 const std::shared_ptr<const SceneVertex>& SceneViewer::vertex(int number) {
-  const auto found = std::find_if(loaded_.begin(), loaded_.end(),
-                                  [&](const Loaded& loaded) { return loaded.number == number; });
-  if (found != loaded_.end()) {
-    loaded_.splice(loaded_.begin(), loaded_, found);
-  } else {
-    loaded_.push_front({number, std::make_shared<const SceneVertex>(load_vertex_(number))});
-    if (loaded_.size() > kMaxLoaded) {
-      loaded_.pop_back();
-    }
-  }
-  return loaded_.front().vertex;
+  return loaded_.get(number,
+                     [&] { return std::make_shared<const SceneVertex>(load_vertex_(number)); });
 }
 
 void SceneViewer::load(ScenePosition position) {
@@ -103,19 +89,8 @@ PreparedSceneView SceneViewer::prepare(ScenePosition position) {
   load(position);
   PreparedSceneView prepared{
       .position = position, .place = layout_.locate(position), .sources = {}};
-  const std::vector<int> vertices = vertices_of(prepared.place);
-  const auto found = std::find_if(sources_.begin(), sources_.end(), [&](const auto& sources) {
-    return sources->vertices == vertices;
-  });
-  if (found != sources_.end()) {
-    sources_.splice(sources_.begin(), sources_, found);
-  } else {
-    sources_.push_front(make_sources(prepared.place));
-    if (sources_.size() > kMaxSources) {
-      sources_.pop_back();
-    }
-  }
-  prepared.sources = sources_.front();
+  prepared.sources =
+      sources_.get(vertices_of(prepared.place), [&] { return make_sources(prepared.place); });
   return prepared;
 }
 
@@ -167,11 +142,11 @@ void SceneViewer::fit_intensities(SceneSources& sources) {
     fit = pair_fits_.emplace(sources.vertices, std::array<IntensityFit, 4>()).first;
     if (synthesizer_.options().match_intensities) {
       const Photograph& first = sources.loaded[0]->image;
-      fit->second =
-          fit_channels(synthesizer_.intensity_sums(
-                           first, sources.loaded[1]->image, sources.disparity_px[0].view(),
-                           sources.disparity_px[1].view(), pair_view(sources, middle)),
-                       first.channels(), 1);
+      fit->second = fit_channels(synthesizer_.intensity_sums({first, sources.loaded[1]->image,
+                                                              sources.disparity_px[0].view(),
+                                                              sources.disparity_px[1].view()},
+                                                             pair_view(sources, middle)),
+                                 first.channels(), 1);
     }
   }
   sources.pair_fit = fit->second;
@@ -220,8 +195,8 @@ void SceneViewer::render(const PreparedSceneView& prepared, SynthesizedView& vie
     synthesizer_.synthesize(triple_of(sources), geometry, view, sources.triple_fit);
     return;
   }
-  synthesizer_.synthesize(sources.loaded[0]->image, sources.loaded[1]->image,
-                          sources.disparity_px[0].view(), sources.disparity_px[1].view(),
+  synthesizer_.synthesize({sources.loaded[0]->image, sources.loaded[1]->image,
+                           sources.disparity_px[0].view(), sources.disparity_px[1].view()},
                           pair_view(sources, prepared.position), view, &sources.pair_fit);
 }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <functional>
-#include <list>
 #include <map>
 #include <memory>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
+#include "engine/scene_graph/recently_used.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/synthesis/view_synthesizer.h"
 
@@ -84,10 +84,6 @@ class SceneViewer {
   ScenePlace synthesize(ScenePosition position, SynthesizedView& view);
 
  private:
-  struct Loaded {
-    int number = 0;
-    std::shared_ptr<const SceneVertex> vertex;
-  };
   [[nodiscard]] ScenePosition at(int vertex) const;
   [[nodiscard]] double length_of(const ScenePlace& place) const;
   const std::shared_ptr<const SceneVertex>& vertex(int number);
@@ -101,8 +97,9 @@ class SceneViewer {
   LoadVertex load_vertex_;
   Execution& execution_;
   ViewSynthesizer synthesizer_;
-  std::list<Loaded> loaded_;                                // most recently used first, as below
-  std::list<std::shared_ptr<const SceneSources>> sources_;  // the last few
+  // In addition to those of views in progress; a stereo view needs up to six vertices.
+  RecentlyUsed<int, std::shared_ptr<const SceneVertex>> loaded_{8};
+  RecentlyUsed<std::vector<int>, std::shared_ptr<const SceneSources>> sources_{2};
   std::map<std::vector<int>, std::array<IntensityFit, 4>> pair_fits_;
   std::map<std::vector<int>, TripleFit> triple_fits_;
 };

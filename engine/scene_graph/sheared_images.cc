@@ -71,11 +71,9 @@ Photograph sheared(const Photograph& photograph, const Shear& shear, Execution& 
 DisparityMap unsheared_disparity(ImageView<const float> map, const Shear& shear, int height_px,
                                  Execution& execution) {
   DisparityMap result(map.width(), height_px);
-  execution.for_each_band(height_px, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < map.width(); ++x) {
-        result.at(x, y) = between_rows(map, x, sheared_row(shear, x, y));
-      }
+  execution.for_each_row(height_px, [&](int y) {
+    for (int x = 0; x < map.width(); ++x) {
+      result.at(x, y) = between_rows(map, x, sheared_row(shear, x, y));
     }
   });
   return result;

@@ -15,7 +15,7 @@
 #include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/temporal_options.h"
 #include "engine/synthesis/synthesis_options.h"
-#include "engine/view_geometry/view_path.h"
+#include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
 

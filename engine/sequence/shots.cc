@@ -247,8 +247,9 @@ class Survey {
     matcher.match(pair_.left, pair_.right, {}, maps_);
     const bool is_left = options_.match.reference == Side::kLeft;
     disparities_.add(is_left ? maps_.left.disparity_px.view() : maps_.right.disparity_px.view());
-    sums.add(synthesizer_.intensity_sums(pair_.left, pair_.right, maps_.left.disparity_px.view(),
-                                         maps_.right.disparity_px.view(), kViewOfFit));
+    sums.add(synthesizer_.intensity_sums(
+        {pair_.left, pair_.right, maps_.left.disparity_px.view(), maps_.right.disparity_px.view()},
+        kViewOfFit));
   }
 
   PairSource& pairs_;

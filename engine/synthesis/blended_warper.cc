@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "engine/error.h"
+#include "engine/rectification/rotations.h"
 #include "engine/synthesis/view_assembly.h"
 #include "engine/synthesis/view_finisher.h"
 #include "engine/synthesis/warped_pair_layout.h"
@@ -134,7 +135,7 @@ void BlendedWarper<T>::warp(int y, std::span<float> scratch, float* memory) cons
       // Both rays scaled by q, so that infinity is no special case.
       const Eigen::Vector3d own = view_.scale_px * ray;
       const Eigen::Vector3d other = own - double{q} * sources_[k].centre;
-      const auto angle = static_cast<float>(std::atan2(own.cross(other).norm(), own.dot(other)));
+      const auto angle = static_cast<float>(angle_between(own, other));
       weights[k] = static_cast<float>(sources_[k].share) / std::max(angle, kMinAngle) *
                    (goes_on(nearness_of(k), x) ? 1.0F : trust_at_ends_);
       all += weights[k];

@@ -88,7 +88,7 @@ ImageWarper<T>::ImageWarper(ImageView<const T> image, ImageView<const float> dis
 
 template <typename T>
 std::size_t ImageWarper<T>::scratch_floats() const {
-  return 5 * row_floats(width(), 1);
+  return position_floats(width());
 }
 
 // Moves the nearest pixel: for samples outside gaps, the one that was mapped there.
@@ -107,13 +107,7 @@ void ImageWarper<T>::move_to_whole_pixels(const kernels::SourcePositions& positi
 
 template <typename T>
 void ImageWarper<T>::warp(int y, std::span<float> scratch, float* colours, float* nearness) const {
-  const auto part = [&](std::size_t k) { return scratch.data() + k * row_floats(width(), 1); };
-  const kernels::SourcePositions positions{.column = reinterpret_cast<std::int32_t*>(part(0)),
-                                           .line = reinterpret_cast<std::int32_t*>(part(1)),
-                                           .fraction_x = part(2),
-                                           .fraction_y = part(3),
-                                           .disparity_px = part(4),
-                                           .nearness = nearness};
+  const kernels::SourcePositions positions = positions_in(scratch, width(), nearness);
   kernels::source_positions_row(back_,
                                 {.nearness = nearness_.row(y),
                                  .count = width(),

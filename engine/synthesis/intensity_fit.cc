@@ -42,4 +42,22 @@ std::array<IntensityFit, 4> fit_channels(const kernels::IntensitySums& sums, int
   return fits;
 }
 
+kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity, double alpha,
+                                    std::optional<double> chosen_gamma,
+                                    double grey_levels_per_unit) {
+  const double gamma = chosen_gamma.value_or(alpha);
+
+  kernels::BlendWeights weights;
+  weights.alpha = static_cast<float>(alpha);
+  for (std::size_t c = 0; c < intensity.size(); ++c) {
+    const double a = intensity[c].offset / grey_levels_per_unit;
+    const double b = intensity[c].gain;
+    weights.left_scale[c] = static_cast<float>(gamma + (1 - gamma) * b);
+    weights.left_offset[c] = static_cast<float>((1 - gamma) * a);
+    weights.right_scale[c] = static_cast<float>(gamma / b + (1 - gamma));
+    weights.right_offset[c] = static_cast<float>(-gamma * a / b);
+  }
+  return weights;
+}
+
 }  // namespace vantage

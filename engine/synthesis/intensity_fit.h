@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "kernels/intensity_sums/intensity_sums.h"
+#include "kernels/view_blend/view_blend.h"
 
 namespace vantage {
 
@@ -24,5 +26,10 @@ IntensityFit fit_intensities(const kernels::IntensitySums& sums, int channel,
 /// The fits of all colour channels; the identity for an alpha channel.
 std::array<IntensityFit, 4> fit_channels(const kernels::IntensitySums& sums, int channels,
                                          double grey_levels_per_unit);
+
+/// (3.12): each image's colours are adjusted towards the other's by its share of γ.
+[[nodiscard]] kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity,
+                                                  double alpha, std::optional<double> chosen_gamma,
+                                                  double grey_levels_per_unit);
 
 }  // namespace vantage

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <variant>
 
+#include "engine/synthesis/photograph_grid.h"
+
 namespace vantage {
 namespace {
 
@@ -82,11 +84,9 @@ class SourceAtCamera {
     const auto far_px = static_cast<float>(view_.infinity_disparity_px);
     Image<float>& filled = maps_[which];
     filled.resize(width, map_px.height());
-    execution_.for_each_band(map_px.height(), [&](int first_row, int end_row) {
-      for (int row = first_row; row < end_row; ++row) {
-        std::transform(map_px.row(row), map_px.row(row) + width, filled.row(row),
-                       [far_px](float d) { return is_known(d) ? d : far_px; });
-      }
+    execution_.for_each_row(map_px.height(), [&](int row) {
+      std::transform(map_px.row(row), map_px.row(row) + width, filled.row(row),
+                     [far_px](float d) { return is_known(d) ? d : far_px; });
     });
     map_px = filled.view();
   }
@@ -123,30 +123,16 @@ void PoseRenderer::check(const ViewPose& pose, int width_px, int height_px) cons
 void PoseRenderer::render(const ViewSource& source, const ViewPose& pose, SynthesizedView& view,
                           const std::array<IntensityFit, 4>* given_fit) const {
   if (const PosedCamera* camera = three_step_camera(pose)) {
-    three_steps_.synthesize(source.left, source.right, source.left_disparity_px,
-                            source.right_disparity_px, *cameras_, *camera, view, given_fit);
+    three_steps_.synthesize(source, *cameras_, *camera, view, given_fit);
     return;
   }
   const NewView geometry = new_view(pose, cameras_, source.left.width(), source.left.height());
   const SourceAtCamera seen(geometry, source, execution_);
-  const ViewSource& from = seen.source();
-  if (from.photographs) {
-    synthesizer_.synthesize(*from.photographs, from.left_disparity_px, from.right_disparity_px,
-                            seen.view(), view, given_fit);
-    return;
-  }
-  synthesizer_.synthesize(from.left, from.right, from.left_disparity_px, from.right_disparity_px,
-                          seen.view(), view, given_fit);
+  synthesizer_.synthesize(seen.source(), seen.view(), view, given_fit);
 }
 
 kernels::IntensitySums PoseRenderer::intensity_sums(const ViewSource& source) const {
-  const NewView middle = baseline_view(0.5, 0, source.left.width(), source.left.height());
-  if (source.photographs) {
-    return synthesizer_.intensity_sums(*source.photographs, source.left_disparity_px,
-                                       source.right_disparity_px, middle);
-  }
-  return synthesizer_.intensity_sums(source.left, source.right, source.left_disparity_px,
-                                     source.right_disparity_px, middle);
+  return synthesizer_.intensity_sums(source, 0.5);
 }
 
 }  // namespace vantage

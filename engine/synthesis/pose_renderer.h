@@ -16,17 +16,6 @@
 
 namespace vantage {
 
-/// Inputs for the views of one frame. Nothing is owned.
-struct ViewSource {
-  const Photograph& left;  ///< rectified, as is `right`
-  const Photograph& right;
-  ImageView<const float> left_disparity_px;
-  ImageView<const float> right_disparity_px;
-  /// The photographs that `left` and `right` were rectified from, for colours in one interpolation;
-  /// empty if there are none, or if colours move by whole pixels.
-  std::optional<UnrectifiedPair> photographs;
-};
-
 /// Renders a pair from any pose, by the method that suits the pose and the options: with
 /// WarpColour::kForward, PosedCamera poses take the book's three steps; everything else is one
 /// pass, from the photographs if the source has them. At a camera's own position the view is that

@@ -55,16 +55,8 @@ class OutlineSoftener {
             outline_bytes(image.width(), image.height(), image.channels(), sizeof(T)))) {}
 
   void run() {
-    execution_.for_each_band(image_.height(), [&](int first_row, int end_row) {
-      for (int y = first_row; y < end_row; ++y) {
-        find_changes(y);
-      }
-    });
-    execution_.for_each_band(image_.height(), [&](int first_row, int end_row) {
-      for (int y = first_row; y < end_row; ++y) {
-        apply_changes(y);
-      }
-    });
+    execution_.for_each_row(image_.height(), [&](int y) { find_changes(y); });
+    execution_.for_each_row(image_.height(), [&](int y) { apply_changes(y); });
   }
 
  private:

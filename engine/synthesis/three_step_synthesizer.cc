@@ -72,16 +72,14 @@ template <typename Body>
 void for_each_source_pixel(const Eigen::Matrix3d& source_from_result, int width_px, int height_px,
                            int source_width, int source_height, Execution& execution,
                            const Body& body) {
-  execution.for_each_band(height_px, [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < width_px; ++x) {
-        const Eigen::Vector2f position = source_position(source_from_result, x, y);
-        const float column = std::floor(position.x() + 0.5F);
-        const float line = std::floor(position.y() + 0.5F);
-        if (column >= 0 && column < static_cast<float>(source_width) && line >= 0 &&
-            line < static_cast<float>(source_height)) {
-          body(x, y, static_cast<int>(column), static_cast<int>(line));
-        }
+  execution.for_each_row(height_px, [&](int y) {
+    for (int x = 0; x < width_px; ++x) {
+      const Eigen::Vector2f position = source_position(source_from_result, x, y);
+      const float column = std::floor(position.x() + 0.5F);
+      const float line = std::floor(position.y() + 0.5F);
+      if (column >= 0 && column < static_cast<float>(source_width) && line >= 0 &&
+          line < static_cast<float>(source_height)) {
+        body(x, y, static_cast<int>(column), static_cast<int>(line));
       }
     }
   });
@@ -138,11 +136,8 @@ TrifocalRectification rectification_of(const RectifiedPair& pair, const PosedCam
 ThreeStepSynthesizer::ThreeStepSynthesizer(const SynthesisOptions& options, Execution& execution)
     : synthesizer_(options, execution), execution_(execution) {}
 
-void ThreeStepSynthesizer::synthesize(const Photograph& left, const Photograph& right,
-                                      ImageView<const float> left_disparity,
-                                      ImageView<const float> right_disparity,
-                                      const RectifiedPair& pair, const PosedCamera& camera,
-                                      SynthesizedView& view,
+void ThreeStepSynthesizer::synthesize(const ViewSource& source, const RectifiedPair& pair,
+                                      const PosedCamera& camera, SynthesizedView& view,
                                       const std::array<IntensityFit, 4>* given_fit) const {
   const TrifocalRectification rig = rectification_of(pair, camera);
   const auto rectified = [&](const Photograph& image, std::size_t number) {
@@ -151,9 +146,9 @@ void ThreeStepSynthesizer::synthesize(const Photograph& left, const Photograph& 
   };
   SynthesizedView in_plane;
   synthesizer_.synthesize(
-      rectified(left, 0), rectified(right, 1),
-      rectified_map(left_disparity, pair, rig, rig.homographies[0], execution_).view(),
-      rectified_map(right_disparity, pair, rig, rig.homographies[1], execution_).view(),
+      {rectified(source.left, 0), rectified(source.right, 1),
+       rectified_map(source.left_disparity_px, pair, rig, rig.homographies[0], execution_).view(),
+       rectified_map(source.right_disparity_px, pair, rig, rig.homographies[1], execution_).view()},
       baseline_view(rig.view_x, rig.view_y, rig.width_px, rig.height_px), in_plane, given_fit);
   const Eigen::Matrix3d& derectifying = rig.homographies[2];
   view.image =

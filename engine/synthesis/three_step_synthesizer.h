@@ -23,13 +23,12 @@ class ThreeStepSynthesizer {
   /// As ViewSynthesizer.
   ThreeStepSynthesizer(const SynthesisOptions& options, Execution& execution);
 
-  /// left, right and maps as for ViewSynthesizer; `pair` is their geometry, `camera` the new one in
-  /// the frame of the left. The view has the camera's size. Throws Error as
+  /// `source` as for ViewSynthesizer, its photographs are not used; `pair`: its geometry; `camera`:
+  /// the new one in the frame of the left. The view has the camera's size. Throws Error as
   /// trifocal_rectification() does, in particular if the plane through the three cameras intersects
   /// the field of view of one; otherwise as ViewSynthesizer.
-  void synthesize(const Photograph& left, const Photograph& right,
-                  ImageView<const float> left_disparity, ImageView<const float> right_disparity,
-                  const RectifiedPair& pair, const PosedCamera& camera, SynthesizedView& view,
+  void synthesize(const ViewSource& source, const RectifiedPair& pair, const PosedCamera& camera,
+                  SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
 
   /// Upper bound of the working memory of synthesize() in bytes, for photographs with this many

@@ -64,15 +64,13 @@ TripleWarper<T>::TripleWarper(const TripleSource<T>& source,
       trust_at_ends_(ViewFinisher<T>::trust_at_ends(options, alpha_of_first_)),
       gradient_limit_px_(static_cast<float>(options.disparity_gradient_limit_px)),
       images_(warpers_of(source, options, view, execution)) {
-  // (3.12) with γ = α.
-  const double gamma = alpha_of_first_;
+  const kernels::BlendWeights weights =
+      blend_weights(second_on_first, alpha_of_first_, std::nullopt, double{kGreyLevelsPerUnit<T>});
   for (std::size_t c = 0; c < second_on_first.size(); ++c) {
-    const double a = second_on_first[c].offset / double{kGreyLevelsPerUnit<T>};
-    const double b = second_on_first[c].gain;
-    first_.scale[c] = static_cast<float>(gamma + (1 - gamma) * b);
-    first_.offset[c] = static_cast<float>((1 - gamma) * a);
-    second_.scale[c] = static_cast<float>(gamma / b + (1 - gamma));
-    second_.offset[c] = static_cast<float>(-gamma * a / b);
+    first_.scale[c] = weights.left_scale[c];
+    first_.offset[c] = weights.left_offset[c];
+    second_.scale[c] = weights.right_scale[c];
+    second_.offset[c] = weights.right_offset[c];
   }
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <optional>
+
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
 #include "engine/rectification/rectifier.h"
-#include "engine/synthesis/whole_photograph.h"
 
 namespace vantage {
+
+class WholePhotograph;
 
 /// Correspondence between the pixels of a rectified image and its photograph. `positions` have the
 /// size of the rectified image's map, `disparity_px` that of the photograph. Nothing is owned.
@@ -27,6 +30,17 @@ struct UnrectifiedPair {
   const Photograph& right;
   PhotographGeometry left_geometry;
   PhotographGeometry right_geometry;
+};
+
+/// Inputs for the views of one frame. Nothing is owned.
+struct ViewSource {
+  const Photograph& left;  ///< rectified, as is `right`
+  const Photograph& right;
+  ImageView<const float> left_disparity_px;
+  ImageView<const float> right_disparity_px;
+  /// The photographs that `left` and `right` were rectified from, for colours in one interpolation;
+  /// empty if there are none, or if colours move by whole pixels.
+  std::optional<UnrectifiedPair> photographs = std::nullopt;
 };
 
 }  // namespace vantage

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 
 #include "engine/execution.h"
@@ -31,25 +30,6 @@ struct ViewRowRecord {
   kernels::IntensitySums sums;
   int holes = 0;
 };
-
-// (3.12): each image's colours are adjusted towards the other's by its share of γ.
-inline kernels::BlendWeights blend_weights(const std::array<IntensityFit, 4>& intensity,
-                                           double alpha, std::optional<double> chosen_gamma,
-                                           double grey_levels_per_unit) {
-  const double gamma = chosen_gamma.value_or(alpha);
-
-  kernels::BlendWeights weights;
-  weights.alpha = static_cast<float>(alpha);
-  for (std::size_t c = 0; c < intensity.size(); ++c) {
-    const double a = intensity[c].offset / grey_levels_per_unit;
-    const double b = intensity[c].gain;
-    weights.left_scale[c] = static_cast<float>(gamma + (1 - gamma) * b);
-    weights.left_offset[c] = static_cast<float>((1 - gamma) * a);
-    weights.right_scale[c] = static_cast<float>(gamma / b + (1 - gamma));
-    weights.right_offset[c] = static_cast<float>(-gamma * a / b);
-  }
-  return weights;
-}
 
 /// Makes one view from the rows of `Warper`, RowPairWarper or SurfaceWarper.
 template <typename T, typename Warper>
@@ -149,11 +129,7 @@ class ViewAssembly {
       for_each_warped_row(body);
       return;
     }
-    execution_.for_each_band(height_, [&](int first_row, int end_row) {
-      for (int y = first_row; y < end_row; ++y) {
-        body(y, warped_in(kept_row(y)));
-      }
-    });
+    execution_.for_each_row(height_, [&](int y) { body(y, warped_in(kept_row(y))); });
   }
 
   void combine(Image<T>& image, SynthesizedView& view) {

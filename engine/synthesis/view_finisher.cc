@@ -171,10 +171,8 @@ void ViewFinisher<T>::finish_view() {
     soften_outlines(*coverage, kept_disparity(),
                     static_cast<float>(options_.disparity_gradient_limit_px), image_, execution_);
   } else if (fills_across_rows(options_.holes)) {
-    execution_.for_each_band(height, [&](int first_row, int end_row) {
-      for (int y = first_row; y < end_row; ++y) {
-        kernels::mix_outlines_row(kept_row(y).shares, width, image_.channels(), image_.row(y));
-      }
+    execution_.for_each_row(height, [&](int y) {
+      kernels::mix_outlines_row(kept_row(y).shares, width, image_.channels(), image_.row(y));
     });
   }
 }

@@ -12,8 +12,7 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/synthesis/row_pair_warper.h"
-#include "engine/synthesis/surface_warper.h"
+#include "engine/synthesis/pair_warpers.h"
 #include "engine/synthesis/view_assembly.h"
 #include "engine/synthesis/view_finisher.h"
 #include "engine/synthesis/view_sampling.h"
@@ -67,28 +66,33 @@ struct PairOfMaps {
   PhotographGeometry right_geometry = {};
 };
 
-/// Original photographs with maps of their rectified images. Throws Error if they do not match.
-PairOfMaps pair_of(const UnrectifiedPair& photographs, ImageView<const float> left_disparity,
-                   ImageView<const float> right_disparity, const SynthesisOptions& options) {
-  if (options.warp != WarpColour::kOnePass) {
-    throw Error("colours come from photographs that are not rectified, expected warp one-pass");
-  }
+void check_geometry(const Photograph& photograph, const PhotographGeometry& geometry,
+                    ImageView<const float> map_px) {
   const auto require_size = [](ImageView<const float> image, int width, int height) {
     if (image.width() != width || image.height() != height) {
       throw Error(fmt::format("geometry of a photograph is {}×{}, expected {}×{}", image.width(),
                               image.height(), width, height));
     }
   };
-  const auto check_geometry = [&](const Photograph& photograph, const PhotographGeometry& geometry,
-                                  ImageView<const float> map_px) {
-    require_size(geometry.positions.x_px, map_px.width(), map_px.height());
-    require_size(geometry.positions.y_px, map_px.width(), map_px.height());
-    require_size(geometry.disparity_px, photograph.width(), photograph.height());
-  };
-  check_geometry(photographs.left, photographs.left_geometry, left_disparity);
-  check_geometry(photographs.right, photographs.right_geometry, right_disparity);
-  return {photographs.left, photographs.right,         left_disparity,
-          right_disparity,  photographs.left_geometry, photographs.right_geometry};
+  require_size(geometry.positions.x_px, map_px.width(), map_px.height());
+  require_size(geometry.positions.y_px, map_px.width(), map_px.height());
+  require_size(geometry.disparity_px, photograph.width(), photograph.height());
+}
+
+/// What colours are taken from. Throws Error if photographs do not match their maps.
+PairOfMaps pair_of(const ViewSource& source, const SynthesisOptions& options) {
+  if (!source.photographs) {
+    return {source.left, source.right, source.left_disparity_px, source.right_disparity_px};
+  }
+  if (options.warp != WarpColour::kOnePass) {
+    throw Error("colours come from photographs that are not rectified, expected warp one-pass");
+  }
+  const UnrectifiedPair& from = *source.photographs;
+  check_geometry(from.left, from.left_geometry, source.left_disparity_px);
+  check_geometry(from.right, from.right_geometry, source.right_disparity_px);
+  return {
+      from.left,          from.right,         source.left_disparity_px, source.right_disparity_px,
+      from.left_geometry, from.right_geometry};
 }
 
 /// Forward mapping moves whole pixels, so supersampling does not apply.
@@ -142,32 +146,19 @@ void with_source(const PairOfMaps& pair, const Body& body) {
       pair.left.pixels);
 }
 
-/// Checks the pair and the position, then calls body(synthesis) with a ViewAssembly of its pixel
-/// type.
-template <typename Body>
-void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, double view_x,
-                    Execution& execution, const Body& body) {
-  if (!(std::abs(view_x) <= kMaxViewDistance)) {
-    throw UsageError(fmt::format("view is at {} baselines, expected -{}..{}", view_x,
-                                 kMaxViewDistance, kMaxViewDistance));
-  }
-  with_source(pair, [&]<typename T>(const StereoSource<T>& source) {
-    const RowPairWarper<T> warper(source, options, view_x);
-    body(ViewAssembly<T, RowPairWarper<T>>(warper, options, source.left.channels(), execution));
-  });
-}
-
-/// As above for any view.
+/// Checks the pair, then calls body(synthesis) with a ViewAssembly of its pixel type.
 template <typename Body>
 void with_synthesis(const PairOfMaps& pair, const SynthesisOptions& options, const NewView& view,
                     Execution& execution, const Body& body) {
-  if (const std::optional<double> view_x = scanline_position(view, pair)) {
-    with_synthesis(pair, options, *view_x, execution, body);
-    return;
-  }
   with_source(pair, [&]<typename T>(const StereoSource<T>& source) {
-    const SurfaceWarper<T> warper(source, options, view, execution);
-    body(ViewAssembly<T, SurfaceWarper<T>>(warper, options, source.left.channels(), execution));
+    const auto assemble = [&]<typename Warper>(const Warper& warper) {
+      body(ViewAssembly<T, Warper>(warper, options, source.left.channels(), execution));
+    };
+    if (const std::optional<double> view_x = scanline_position(view, pair)) {
+      assemble(RowPairWarper<T>(source, options, *view_x));
+    } else {
+      assemble(SurfaceWarper<T>(source, options, view, execution));
+    }
   });
 }
 
@@ -194,58 +185,14 @@ void with_synthesis(const PhotographTriple& triple, const SynthesisOptions& opti
       first.pixels);
 }
 
-/// `position`: XS, or a NewView that needs only one sample per pixel.
-template <typename Position>
-void sample_at(const PairOfMaps& pair, const SynthesisOptions& options, const Position& position,
+/// A view that needs only one sample per pixel.
+void sample_at(const PairOfMaps& pair, const SynthesisOptions& options, const NewView& new_view,
                Execution& execution, SynthesizedView& view,
                const std::array<IntensityFit, 4>* given_fit) {
-  with_synthesis(pair, options, position, execution,
+  with_synthesis(pair, options, new_view, execution,
                  [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
                    synthesis.run(pixels_of<T>(view.image), view, given_fit);
                  });
-}
-
-void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options, double view_x,
-                   Execution& execution, SynthesizedView& view,
-                   const std::array<IntensityFit, 4>* given_fit) {
-  sample_at(pair, options, view_x, execution, view, given_fit);
-}
-
-void synthesize_at(const PairOfMaps& pair, const SynthesisOptions& options, const NewView& new_view,
-                   Execution& execution, SynthesizedView& view,
-                   const std::array<IntensityFit, 4>* given_fit) {
-  const ViewSampling sampling = sampling_of(pair, options, new_view);
-  if (sampling.samples == 1) {
-    sample_at(pair, options, new_view, execution, view, given_fit);
-    return;
-  }
-  SynthesizedView fine;
-  sample_at(pair, options, with_samples(new_view, sampling.samples), execution, fine, given_fit);
-  reduce_view(fine, sampling, view, execution);
-}
-
-template <typename Position>
-kernels::IntensitySums sampled_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
-                                       const Position& position, Execution& execution) {
-  kernels::IntensitySums sums;
-  with_synthesis(pair, options, position, execution,
-                 [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
-                   sums = grey_level_sums(synthesis);
-                 });
-  return sums;
-}
-
-kernels::IntensitySums intensity_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
-                                         double view_x, Execution& execution) {
-  return sampled_sums_at(pair, options, view_x, execution);
-}
-
-kernels::IntensitySums intensity_sums_at(const PairOfMaps& pair, const SynthesisOptions& options,
-                                         const NewView& view, Execution& execution) {
-  const ViewSampling sampling = sampling_of(pair, options, view);
-  return sampled_sums_at(pair, options,
-                         sampling.samples == 1 ? view : with_samples(view, sampling.samples),
-                         execution);
 }
 
 }  // namespace
@@ -287,31 +234,18 @@ std::size_t ViewSynthesizer::filling_bytes(const SynthesisOptions& options, cons
   return filling_bytes(options, fine.width_px, fine.height_px, channels);
 }
 
-void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right,
-                                 ImageView<const float> left_disparity,
-                                 ImageView<const float> right_disparity, double view_x,
+void ViewSynthesizer::synthesize(const ViewSource& source, const NewView& new_view,
                                  SynthesizedView& view,
                                  const std::array<IntensityFit, 4>* given_fit) const {
-  synthesize_at({left, right, left_disparity, right_disparity}, options_, view_x, execution_, view,
-                given_fit);
-}
-
-void ViewSynthesizer::synthesize(const Photograph& left, const Photograph& right,
-                                 ImageView<const float> left_disparity,
-                                 ImageView<const float> right_disparity, const NewView& new_view,
-                                 SynthesizedView& view,
-                                 const std::array<IntensityFit, 4>* given_fit) const {
-  synthesize_at({left, right, left_disparity, right_disparity}, options_, new_view, execution_,
-                view, given_fit);
-}
-
-void ViewSynthesizer::synthesize(const UnrectifiedPair& photographs,
-                                 ImageView<const float> left_disparity,
-                                 ImageView<const float> right_disparity, const NewView& new_view,
-                                 SynthesizedView& view,
-                                 const std::array<IntensityFit, 4>* given_fit) const {
-  synthesize_at(pair_of(photographs, left_disparity, right_disparity, options_), options_, new_view,
-                execution_, view, given_fit);
+  const PairOfMaps pair = pair_of(source, options_);
+  const ViewSampling sampling = sampling_of(pair, options_, new_view);
+  if (sampling.samples == 1) {
+    sample_at(pair, options_, new_view, execution_, view, given_fit);
+    return;
+  }
+  SynthesizedView fine;
+  sample_at(pair, options_, with_samples(new_view, sampling.samples), execution_, fine, given_fit);
+  reduce_view(fine, sampling, view, execution_);
 }
 
 void ViewSynthesizer::synthesize(const PhotographTriple& triple, const TripleView& new_view,
@@ -335,10 +269,10 @@ TripleFit ViewSynthesizer::fit_triple(const PhotographTriple& triple,
                           .height_px = new_view.height_px,
                           .from_left = new_view.from[0],
                           .from_right = new_view.from[1]};
-  fit.second_on_first =
-      fit_channels(intensity_sums(first, *triple.images[1], triple.disparity_px[0],
-                                  triple.disparity_px[1], first_two),
-                   first.channels(), 1);
+  fit.second_on_first = fit_channels(
+      intensity_sums({first, *triple.images[1], triple.disparity_px[0], triple.disparity_px[1]},
+                     first_two),
+      first.channels(), 1);
   with_synthesis(triple, options_, new_view, fit.second_on_first, execution_,
                  [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
                    fit.third_on_others =
@@ -347,30 +281,17 @@ TripleFit ViewSynthesizer::fit_triple(const PhotographTriple& triple,
   return fit;
 }
 
-kernels::IntensitySums ViewSynthesizer::intensity_sums(const Photograph& left,
-                                                       const Photograph& right,
-                                                       ImageView<const float> left_disparity,
-                                                       ImageView<const float> right_disparity,
-                                                       double view_x) const {
-  return intensity_sums_at({left, right, left_disparity, right_disparity}, options_, view_x,
-                           execution_);
-}
-
-kernels::IntensitySums ViewSynthesizer::intensity_sums(const Photograph& left,
-                                                       const Photograph& right,
-                                                       ImageView<const float> left_disparity,
-                                                       ImageView<const float> right_disparity,
+kernels::IntensitySums ViewSynthesizer::intensity_sums(const ViewSource& source,
                                                        const NewView& new_view) const {
-  return intensity_sums_at({left, right, left_disparity, right_disparity}, options_, new_view,
-                           execution_);
-}
-
-kernels::IntensitySums ViewSynthesizer::intensity_sums(const UnrectifiedPair& photographs,
-                                                       ImageView<const float> left_disparity,
-                                                       ImageView<const float> right_disparity,
-                                                       const NewView& new_view) const {
-  return intensity_sums_at(pair_of(photographs, left_disparity, right_disparity, options_),
-                           options_, new_view, execution_);
+  const PairOfMaps pair = pair_of(source, options_);
+  const ViewSampling sampling = sampling_of(pair, options_, new_view);
+  kernels::IntensitySums sums;
+  with_synthesis(pair, options_,
+                 sampling.samples == 1 ? new_view : with_samples(new_view, sampling.samples),
+                 execution_, [&]<typename T, typename Warper>(ViewAssembly<T, Warper>&& synthesis) {
+                   sums = grey_level_sums(synthesis);
+                 });
+  return sums;
 }
 
 }  // namespace vantage

@@ -61,31 +61,25 @@ class ViewSynthesizer {
   ViewSynthesizer(const SynthesisOptions& options, Execution& execution);
 
   /// left, right: equal size, depth and channels. Maps: same size, NaN or ±inf = unknown (such
-  /// pixels are not warped). view_x = XS in baselines, 0 = left camera, 1 = right camera; within
-  /// ±16. `view` shares no memory with the inputs. `given_fit` replaces the regression, even if the
-  /// options disable it. Throws Error when shapes differ, UsageError for a view_x out of range.
-  void synthesize(const Photograph& left, const Photograph& right,
-                  ImageView<const float> left_disparity, ImageView<const float> right_disparity,
-                  double view_x, SynthesizedView& view,
+  /// pixels are not warped). The result has the view's size and shares no memory with the inputs.
+  /// `given_fit` replaces the regression, even if the options disable it. With WarpColour::kForward
+  /// views off the baseline show the nearest source pixel everywhere.
+  ///
+  /// With photographs that the pair was rectified from, colours come from them: one interpolation
+  /// instead of two. Where a photograph shows nothing the rectified image is black, and so is its
+  /// share of the view. The options must have WarpColour::kOnePass: the book moves pixels of
+  /// rectified images.
+  ///
+  /// Throws Error when shapes differ, and for a view without pixels, larger than 65500 pixels in
+  /// width or height, or that cannot be inverted.
+  void synthesize(const ViewSource& source, const NewView& new_view, SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const;
-
-  /// As above for any view, of any size; the result has the view's size. baseline_view(XS, 0) of
-  /// the images' size gives the view at view_x = XS. With WarpColour::kForward other views show the
-  /// nearest source pixel everywhere. Throws Error for a view without pixels, larger than 65500
-  /// pixels in width or height, or that cannot be inverted.
-  void synthesize(const Photograph& left, const Photograph& right,
-                  ImageView<const float> left_disparity, ImageView<const float> right_disparity,
-                  const NewView& new_view, SynthesizedView& view,
-                  const std::array<IntensityFit, 4>* given_fit = nullptr) const;
-
-  /// As above with colours from the photographs that the pair was rectified from: one interpolation
-  /// instead of two. Maps are those of the rectified images. Where a photograph shows nothing the
-  /// rectified image is black, and so is its share of the view. Throws Error unless the options
-  /// have WarpColour::kOnePass: the book moves pixels of rectified images.
-  void synthesize(const UnrectifiedPair& photographs, ImageView<const float> left_disparity,
-                  ImageView<const float> right_disparity, const NewView& new_view,
-                  SynthesizedView& view,
-                  const std::array<IntensityFit, 4>* given_fit = nullptr) const;
+  /// The view at XS in baselines: baseline_view() of the images' size.
+  void synthesize(const ViewSource& source, double view_x, SynthesizedView& view,
+                  const std::array<IntensityFit, 4>* given_fit = nullptr) const {
+    synthesize(source, baseline_view(view_x, 0, source.left.width(), source.left.height()), view,
+               given_fit);
+  }
 
   /// A view among three cameras (TripleWarper), always with γ = α: the brightness follows the
   /// weights and equals a photograph's where its weight is 1. Errors as above.
@@ -95,23 +89,16 @@ class ViewSynthesizer {
   [[nodiscard]] TripleFit fit_triple(const PhotographTriple& triple,
                                      const TripleView& new_view) const;
 
-  /// The sums of the regression (3.11) at view_x, in grey levels: sums of several pairs can be
+  /// The sums of the regression (3.11) in a view, in grey levels: sums of several pairs can be
   /// added for one fit_channels(sums, channels, 1). Errors as synthesize(). Identical for any
   /// execution.
-  [[nodiscard]] kernels::IntensitySums intensity_sums(const Photograph& left,
-                                                      const Photograph& right,
-                                                      ImageView<const float> left_disparity,
-                                                      ImageView<const float> right_disparity,
-                                                      double view_x) const;
-  [[nodiscard]] kernels::IntensitySums intensity_sums(const Photograph& left,
-                                                      const Photograph& right,
-                                                      ImageView<const float> left_disparity,
-                                                      ImageView<const float> right_disparity,
+  [[nodiscard]] kernels::IntensitySums intensity_sums(const ViewSource& source,
                                                       const NewView& new_view) const;
-  [[nodiscard]] kernels::IntensitySums intensity_sums(const UnrectifiedPair& photographs,
-                                                      ImageView<const float> left_disparity,
-                                                      ImageView<const float> right_disparity,
-                                                      const NewView& new_view) const;
+  [[nodiscard]] kernels::IntensitySums intensity_sums(const ViewSource& source,
+                                                      double view_x) const {
+    return intensity_sums(source,
+                          baseline_view(view_x, 0, source.left.width(), source.left.height()));
+  }
 
   /// Working memory of synthesize() in bytes for an image of this shape without a given fit,
   /// besides rows per thread.

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "kernels/intensity_sums/intensity_sums.h"
 #include "kernels/pixel_row/pixel_row.h"
+#include "kernels/source_position/source_position.h"
 
 namespace vantage {
 
@@ -12,6 +15,20 @@ namespace vantage {
   constexpr std::size_t kFloatsPerLine = 16;
   const std::size_t floats = static_cast<std::size_t>(columns) * static_cast<std::size_t>(lanes);
   return (floats + kFloatsPerLine - 1) / kFloatsPerLine * kFloatsPerLine;
+}
+
+/// Floats of scratch memory that positions_in() takes for a row of `width` pixels.
+[[nodiscard]] constexpr std::size_t position_floats(int width) { return 5 * row_floats(width, 1); }
+/// Rows for positions in `scratch`; `nearness`: the row for theirs.
+[[nodiscard]] inline kernels::SourcePositions positions_in(std::span<float> scratch, int width,
+                                                           float* nearness) {
+  const auto part = [&](std::size_t k) { return scratch.data() + k * row_floats(width, 1); };
+  return {.column = reinterpret_cast<std::int32_t*>(part(0)),
+          .line = reinterpret_cast<std::int32_t*>(part(1)),
+          .fraction_x = part(2),
+          .fraction_y = part(3),
+          .disparity_px = part(4),
+          .nearness = nearness};
 }
 
 /// Offsets of the parts of a pair of warped scanlines in one block of memory.

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "engine/io/files/file_bytes.h"
-#include "engine/io/images/image_file.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/sequence/memory_plan.h"

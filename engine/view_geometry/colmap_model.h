@@ -2,10 +2,12 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/pose_estimation/feature_tracks.h"
 #include "engine/rectification/camera_pose.h"
 #include "engine/view_geometry/sized_camera.h"
 
@@ -34,5 +36,19 @@ std::vector<ColmapImage> parse_colmap_images(std::string_view text, const std::s
 /// The model in a folder: cameras.txt and images.txt, at least one image. Throws Error, also for
 /// binary models. Thread rule: may be called concurrently.
 std::vector<ColmapImage> read_colmap_model(const std::filesystem::path& folder);
+
+/// An image of a model to be written.
+struct PosedImageName {
+  std::string name;  ///< path relative to the folder of the images
+  CameraPose pose;
+};
+
+/// Writes a COLMAP model as text, cameras.txt, images.txt and points3D.txt, to a folder that
+/// exists. All images are of one `camera` (PINHOLE, OPENCV or FULL_OPENCV), whose size is known.
+/// Sightings of `points` are numbers of `images`, and positions from the principal point without
+/// distortion, in pixels of fx. Points are grey. Throws Error, also for a lens of more than 8
+/// coefficients, and for names with line breaks.
+void write_colmap_model(const std::filesystem::path& folder, const SizedCamera& camera,
+                        std::span<const PosedImageName> images, std::span<const PointTrack> points);
 
 }  // namespace vantage

@@ -44,14 +44,12 @@ std::optional<DisparityQuantiles> disparity_quantiles(ImageView<const float> dis
 void depth_resolution_map(ImageView<const float> disparity_px, const DepthScale& scale,
                           double step_px, Execution& execution, Image<float>& resolution) {
   resolution.resize(disparity_px.width(), disparity_px.height());
-  execution.for_each_band(disparity_px.height(), [&](int first_row, int end_row) {
-    for (int y = first_row; y < end_row; ++y) {
-      for (int x = 0; x < disparity_px.width(); ++x) {
-        const auto value =
-            depth_resolution(scale, step_px, static_cast<double>(disparity_px.at(x, y)));
-        resolution.at(x, y) =
-            value ? static_cast<float>(*value) : std::numeric_limits<float>::quiet_NaN();
-      }
+  execution.for_each_row(disparity_px.height(), [&](int y) {
+    for (int x = 0; x < disparity_px.width(); ++x) {
+      const auto value =
+          depth_resolution(scale, step_px, static_cast<double>(disparity_px.at(x, y)));
+      resolution.at(x, y) =
+          value ? static_cast<float>(*value) : std::numeric_limits<float>::quiet_NaN();
     }
   });
 }

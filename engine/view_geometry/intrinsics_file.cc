@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +11,7 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/text_lines.h"
 #include "engine/rectification/calibration_entries.h"
+#include "engine/rectification/rotations.h"
 #include "engine/view_geometry/colmap_model.h"
 
 namespace vantage {
@@ -232,14 +232,8 @@ std::vector<CameraPose> parse_opencv_poses(std::string_view text, const std::str
   }
   std::vector<CameraPose> poses;
   for (std::size_t i = 0; i < values.size(); i += kNumbers) {
-    const Eigen::Vector3d turn(values[i], values[i + 1], values[i + 2]);
-    const double angle = turn.norm();
-    CameraPose pose;
-    if (angle > 0) {
-      pose.rotation = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-    }
-    pose.translation = {values[i + 3], values[i + 4], values[i + 5]};
-    poses.push_back(pose);
+    poses.push_back({.rotation = rotation_by({values[i], values[i + 1], values[i + 2]}),
+                     .translation = {values[i + 3], values[i + 4], values[i + 5]}});
   }
   return poses;
 }

@@ -33,8 +33,9 @@ ViewFigures view_figures(const ViewScene& scene, const std::filesystem::path& fo
     if (view.x <= 0 || view.x >= 1) {
       continue;
     }
-    synthesizer.synthesize(pair.left, pair.right, maps.left.disparity_px.view(),
-                           maps.right.disparity_px.view(), view.x, made);
+    synthesizer.synthesize(
+        {pair.left, pair.right, maps.left.disparity_px.view(), maps.right.disparity_px.view()},
+        view.x, made);
     const ViewScores scores =
         evaluate_view(made.image, read_photograph(folder / view.file), execution);
     sum.psnr_db += scores.psnr_db;

@@ -20,7 +20,7 @@
 #include "engine/image/transposed.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
-#include "engine/scene_graph/edge_check.h"
+#include "engine/scene_graph/rectified_edge.h"
 #include "tests/engine/identical_maps.h"
 #include "tests/engine/io_test_support.h"
 

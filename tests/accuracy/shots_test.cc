@@ -113,8 +113,9 @@ class Shots : public ::testing::Test {
       pairs_.decode(pair);
       DisparityMaps maps;
       matcher.match(pair.left, pair.right, {}, maps);
-      sums.add(synthesizer.intensity_sums(pair.left, pair.right, maps.left.disparity_px.view(),
-                                          maps.right.disparity_px.view(), 0.5));
+      sums.add(synthesizer.intensity_sums(
+          {pair.left, pair.right, maps.left.disparity_px.view(), maps.right.disparity_px.view()},
+          0.5));
       for (int y = 0; y < maps.left.disparity_px.height(); ++y) {
         disparities.insert(disparities.end(), maps.left.disparity_px.row(y),
                            maps.left.disparity_px.row(y) + maps.left.disparity_px.width());

@@ -1,4 +1,4 @@
-#include "engine/synthesis/surface_warper.h"
+#include "engine/synthesis/pair_warpers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ struct Pair {
                   SynthesizedView& view,
                   const std::array<IntensityFit, 4>* given_fit = nullptr) const {
     ViewSynthesizer(options, execution)
-        .synthesize(left, right, left_disparity.view(), right_disparity.view(), position, view,
+        .synthesize({left, right, left_disparity.view(), right_disparity.view()}, position, view,
                     given_fit);
   }
 };
@@ -417,8 +417,8 @@ TEST(SurfaceWarper, SumsGiveTheFitOfTheView) {
   Execution execution({.threads = 2});
   const ViewSynthesizer synthesizer({}, execution);
   for (const NewView& new_view : views_of(90, 70)) {
-    const auto sums = synthesizer.intensity_sums(pair.left, pair.right, pair.left_disparity.view(),
-                                                 pair.right_disparity.view(), new_view);
+    const auto sums = synthesizer.intensity_sums(
+        {pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view()}, new_view);
     EXPECT_GT(sums.pixels, 100);
     SynthesizedView view;
     pair.synthesize({}, new_view, execution, view);
@@ -506,7 +506,7 @@ TEST(SurfaceWarper, ForwardMovesWholePixels) {
                    .match_intensities = false,
                    .soft_edges = false},
                   execution)
-      .synthesize({numbered.copy()}, {right.copy()}, disparity.view(), disparity.view(),
+      .synthesize({{numbered.copy()}, {right.copy()}, disparity.view(), disparity.view()},
                   baseline_view(0, 0.4, 16, 15), view);
   // 4 · 0.4 = 1.6 rows up, so the pixel two rows below lands here.
   const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);

@@ -38,14 +38,14 @@ class ThreeStepSynthesizerTest : public testing::Test {
   SynthesizedView three_steps(const PosedCamera& camera, const SynthesisOptions& options) {
     SynthesizedView view;
     ThreeStepSynthesizer(options, execution_)
-        .synthesize(left_.image, right_.image, left_.disparity.view(), right_.disparity.view(),
+        .synthesize({left_.image, right_.image, left_.disparity.view(), right_.disparity.view()},
                     pair_, camera, view);
     return view;
   }
   SynthesizedView one_pass(const PosedCamera& camera) {
     SynthesizedView view;
     ViewSynthesizer({}, execution_)
-        .synthesize(left_.image, right_.image, left_.disparity.view(), right_.disparity.view(),
+        .synthesize({left_.image, right_.image, left_.disparity.view(), right_.disparity.view()},
                     camera_view(pair_, camera), view);
     return view;
   }
@@ -98,7 +98,7 @@ TEST_F(ThreeStepSynthesizerTest, ACameraLikeThePairsOnTheirBaselineNeedsOneStep)
   const SynthesizedView view = three_steps(middle, {.warp = WarpColour::kForward});
   SynthesizedView expected;
   ViewSynthesizer({.warp = WarpColour::kForward}, execution_)
-      .synthesize(left_.image, right_.image, left_.disparity.view(), right_.disparity.view(), 0.5,
+      .synthesize({left_.image, right_.image, left_.disparity.view(), right_.disparity.view()}, 0.5,
                   expected);
   // Homographies are the identity but for rounding, which interpolation may round up or down.
   const ViewScores scores = evaluate_view(view.image, expected.image, execution_);
@@ -111,8 +111,8 @@ TEST_F(ThreeStepSynthesizerTest, IsTheSameForAnyNumberOfThreads) {
   Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   SynthesizedView other;
   ThreeStepSynthesizer({}, serial)
-      .synthesize(left_.image, right_.image, left_.disparity.view(), right_.disparity.view(), pair_,
-                  turned, other);
+      .synthesize({left_.image, right_.image, left_.disparity.view(), right_.disparity.view()},
+                  pair_, turned, other);
   EXPECT_TRUE(test::same(view.image, other.image));
 }
 

@@ -12,8 +12,8 @@
 #include <sstream>
 #include <thread>
 
+#include "engine/rectification/improved_rectification.h"
 #include "engine/rectification/rectifier.h"
-#include "engine/rectification/rig_validation.h"
 #include "tests/engine/io_test_support.h"
 #include "tests/engine/match_cases.h"
 #include "tests/test_paths.h"

@@ -141,11 +141,13 @@ TEST_F(ViewAtCamera, IsThePhotographResampledAndNoWorseThanThreeSteps) {
     SynthesizedView view;
     SynthesizedView three_steps;
     ViewSynthesizer({}, execution_)
-        .synthesize(images[0].image, images[1].image, images[0].disparity.view(),
-                    images[1].disparity.view(), camera_view(pair, camera), view);
+        .synthesize({images[0].image, images[1].image, images[0].disparity.view(),
+                     images[1].disparity.view()},
+                    camera_view(pair, camera), view);
     ThreeStepSynthesizer({}, execution_)
-        .synthesize(images[0].image, images[1].image, images[0].disparity.view(),
-                    images[1].disparity.view(), pair, camera, three_steps);
+        .synthesize({images[0].image, images[1].image, images[0].disparity.view(),
+                     images[1].disparity.view()},
+                    pair, camera, three_steps);
     const double one_pass_db = psnr(view.image, truth, mask, execution_);
     EXPECT_GE(one_pass_db, turn.zoom < 1 ? 51 : 47) << turn.text();
     EXPECT_GE(one_pass_db, psnr(three_steps.image, truth, mask, execution_) - 0.02) << turn.text();

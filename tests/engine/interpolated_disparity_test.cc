@@ -1,4 +1,4 @@
-#include "engine/scene_graph/interpolated_disparity.h"
+#include "engine/scene_graph/cloud_geometry.h"
 
 #include <gtest/gtest.h>
 

@@ -27,7 +27,7 @@
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/pair_exposure.h"
 #include "engine/matching/search/coarse_to_fine/level_search.h"
-#include "engine/refinement/refinement_fields.h"
+#include "engine/refinement/refinement_options.h"
 #include "tests/engine/option_complaint.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/table_keys.h"

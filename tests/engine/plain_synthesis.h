@@ -9,7 +9,7 @@
 
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
-#include "engine/synthesis/row_pair_warper.h"
+#include "engine/synthesis/pair_warpers.h"
 #include "engine/synthesis/view_synthesizer.h"
 
 namespace vantage {

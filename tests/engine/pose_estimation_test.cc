@@ -15,7 +15,7 @@
 #include "engine/pose_estimation/camera_positions.h"
 #include "engine/pose_estimation/feature_tracks.h"
 #include "engine/pose_estimation/rotation_averaging.h"
-#include "engine/pose_estimation/rotation_vector.h"
+#include "engine/rectification/rotations.h"
 
 namespace vantage {
 namespace pose_estimation_test {

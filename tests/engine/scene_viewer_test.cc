@@ -170,8 +170,9 @@ TEST(SceneViewer, OneEdgeIsAPairOfTheSynthesizer) {
   const SceneVertex right = scene.load(1);
   SynthesizedView expected;
   ViewSynthesizer(options, threads())
-      .synthesize(left.image, right.image, left.maps[0].disparity_px.view(),
-                  right.maps[0].disparity_px.view(), 0.3 / 0.8, expected);
+      .synthesize({left.image, right.image, left.maps[0].disparity_px.view(),
+                   right.maps[0].disparity_px.view()},
+                  0.3 / 0.8, expected);
   EXPECT_TRUE(same(view.image, expected.image));
 }
 

@@ -239,12 +239,14 @@ TEST_F(SequenceRunnerTest, CamerasSeeWhatTheSynthesizerRenders) {
         SynthesizedView view;
         if (warp == WarpColour::kForward) {
           ThreeStepSynthesizer(options_.synthesis, serial)
-              .synthesize(pair.left, pair.right, maps.left.disparity_px.view(),
-                          maps.right.disparity_px.view(), cameras_, camera, view);
+              .synthesize({pair.left, pair.right, maps.left.disparity_px.view(),
+                           maps.right.disparity_px.view()},
+                          cameras_, camera, view);
         } else {
           ViewSynthesizer(options_.synthesis, serial)
-              .synthesize(pair.left, pair.right, maps.left.disparity_px.view(),
-                          maps.right.disparity_px.view(), camera_view(cameras_, camera), view);
+              .synthesize({pair.left, pair.right, maps.left.disparity_px.view(),
+                           maps.right.disparity_px.view()},
+                          camera_view(cameras_, camera), view);
         }
         const std::string file = name + "/00000" + std::to_string(frame) + ".png";
         const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);

@@ -120,6 +120,11 @@ struct Scene {
     grid.bring(maps, photograph_maps);
     return grid.pair_of(photographs[0], photographs[1], photograph_maps);
   }
+  /// Of the rectified images; with photographs, of those.
+  [[nodiscard]] ViewSource source(const std::optional<UnrectifiedPair>& from = {}) const {
+    return {rectified[0], rectified[1], maps.left.disparity_px.view(),
+            maps.right.disparity_px.view(), from};
+  }
   void rectify() {
     rectifier.apply(photographs[0], Side::kLeft, rectified[0], execution());
     rectifier.apply(photographs[1], Side::kRight, rectified[1], execution());
@@ -127,17 +132,13 @@ struct Scene {
   SynthesizedView from_photographs(const NewView& view, Execution& on = execution(),
                                    const SynthesisOptions& options = {}) {
     SynthesizedView result;
-    ViewSynthesizer(options, on)
-        .synthesize(unrectified(), maps.left.disparity_px.view(), maps.right.disparity_px.view(),
-                    view, result);
+    ViewSynthesizer(options, on).synthesize(source(unrectified()), view, result);
     return result;
   }
   [[nodiscard]] SynthesizedView from_rectified(const NewView& view,
                                                const SynthesisOptions& options = {}) const {
     SynthesizedView result;
-    ViewSynthesizer(options, execution())
-        .synthesize(rectified[0], rectified[1], maps.left.disparity_px.view(),
-                    maps.right.disparity_px.view(), view, result);
+    ViewSynthesizer(options, execution()).synthesize(source(), view, result);
     return result;
   }
 };
@@ -456,8 +457,7 @@ TEST(SurfaceColours, RegressionSeesThePhotographs) {
   }
   const ViewSynthesizer synthesizer({}, execution());
   const kernels::IntensitySums sums = synthesizer.intensity_sums(
-      scene.unrectified(), scene.maps.left.disparity_px.view(),
-      scene.maps.right.disparity_px.view(), baseline_view(0.5, 0, kWidth, kHeight));
+      scene.source(scene.unrectified()), baseline_view(0.5, 0, kWidth, kHeight));
   const IntensityFit fit = fit_channels(sums, 1, 1)[0];
   EXPECT_NEAR(fit.gain, 2, 0.1);
   EXPECT_NEAR(fit.offset, -0.2 * 255, 0.1 * 255);
@@ -475,9 +475,7 @@ TEST(SurfaceColours, RefuseTheBooksWarpAndGeometryOfAnotherSize) {
   pair.right_geometry.disparity_px = narrow.view();
   SynthesizedView result;
   EXPECT_THAT(error_of([&] {
-                ViewSynthesizer({}, execution())
-                    .synthesize(pair, scene.maps.left.disparity_px.view(),
-                                scene.maps.right.disparity_px.view(), view, result);
+                ViewSynthesizer({}, execution()).synthesize(scene.source(pair), view, result);
               }),
               HasSubstr("is 39×30, expected 40×30"));
 }

@@ -82,7 +82,7 @@ TYPED_TEST(Triple, WithoutOneImageIsThePairOfTheOthers) {
       pair.distance_from_left = 1;
       pair.distance_from_right = 3;
       SynthesizedView expected;
-      synthesizer.synthesize(first, second, first_px.view(), second_px.view(), pair, expected);
+      synthesizer.synthesize({first, second, first_px.view(), second_px.view()}, pair, expected);
       for (std::size_t empty = 0; empty < 3; ++empty) {
         const std::size_t left = empty == 0 ? 1 : 0;
         const std::size_t right = empty == 2 ? 1 : 2;

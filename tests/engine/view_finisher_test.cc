@@ -14,7 +14,7 @@
 
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
-#include "engine/synthesis/row_pair_warper.h"
+#include "engine/synthesis/pair_warpers.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "engine/synthesis/warped_pair_layout.h"
 #include "kernels/hole_fill/hole_fill.h"
@@ -68,7 +68,7 @@ struct ObjectScene {
     Execution execution({.threads = 2});
     SynthesizedView result;
     ViewSynthesizer(options, execution)
-        .synthesize(left, right, left_disparity.view(), right_disparity.view(), view_x, result);
+        .synthesize({left, right, left_disparity.view(), right_disparity.view()}, view_x, result);
     return result;
   }
 };

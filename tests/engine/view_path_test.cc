@@ -1,4 +1,4 @@
-#include "engine/view_geometry/view_path.h"
+#include "engine/view_geometry/view_pose.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -214,7 +214,8 @@ TEST(ViewSampling, FineStripesDoNotAlias) {
   Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   SynthesizedView view;
   ViewSynthesizer({}, execution)
-      .synthesize(photograph, photograph, map.view(), map.view(), zoomed(width, height, 0.5), view);
+      .synthesize({photograph, photograph, map.view(), map.view()}, zoomed(width, height, 0.5),
+                  view);
   const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
   for (int x = width / 4 + 4; x < 3 * width / 4 - 4; ++x) {
     EXPECT_NEAR(image.at(x, height / 2), 128, 14) << x;  // a sample per pixel: 28 to 228

@@ -36,7 +36,7 @@ struct Pair {
   void synthesize(const SynthesisOptions& options, double view_x, Execution& execution,
                   SynthesizedView& view) const {
     ViewSynthesizer(options, execution)
-        .synthesize(left, right, left_disparity.view(), right_disparity.view(), view_x, view);
+        .synthesize({left, right, left_disparity.view(), right_disparity.view()}, view_x, view);
   }
 };
 
@@ -211,8 +211,9 @@ TEST(ViewSynthesizer, ServesSeveralThreadsAtOnce) {
   std::vector<std::thread> threads;
   for (SynthesizedView& view : views) {
     threads.emplace_back([&] {
-      synthesizer.synthesize(pair.left, pair.right, pair.left_disparity.view(),
-                             pair.right_disparity.view(), 0.5, view);
+      synthesizer.synthesize(
+          {pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view()}, 0.5,
+          view);
     });
   }
   for (std::thread& thread : threads) {
@@ -242,7 +243,7 @@ TEST(ViewSynthesizer, ExactMapsGiveTheRenderedView) {
     for (const WarpColour warp : {WarpColour::kOnePass, WarpColour::kForward}) {
       SynthesizedView view;
       ViewSynthesizer({.warp = warp}, execution)
-          .synthesize(left.image, right.image, left.disparity.view(), right.disparity.view(),
+          .synthesize({left.image, right.image, left.disparity.view(), right.disparity.view()},
                       view_x, view);
       const ViewScores scores =
           evaluate_view(view.image, truth.image, execution,
@@ -277,7 +278,7 @@ TEST(ViewSynthesizer, FindsTheIntensityTransform) {
   const Photograph right_photograph{std::move(right)};
   const auto synthesize = [&](const SynthesisOptions& options) {
     ViewSynthesizer(options, execution)
-        .synthesize(left_photograph, right_photograph, map.view(), map.view(), 0.5, view);
+        .synthesize({left_photograph, right_photograph, map.view(), map.view()}, 0.5, view);
   };
   synthesize({.gamma = 1.0});
   EXPECT_NEAR(view.intensity[0].offset, 0.05 * 255, 1e-3);
@@ -305,7 +306,7 @@ TEST(ViewSynthesizer, AnEmptyRowTakesTheNearest) {
   for (const HoleFilling holes : {HoleFilling::kMirror, HoleFilling::kSpread, HoleFilling::kNone}) {
     SynthesizedView view;
     ViewSynthesizer({.holes = holes}, execution)
-        .synthesize(photograph, photograph, map.view(), map.view(), 0.5, view);
+        .synthesize({photograph, photograph, map.view(), map.view()}, 0.5, view);
     std::vector<int> column;
     for (int y = 0; y < 6; ++y) {
       column.push_back(std::get<Image<std::uint8_t>>(view.image.pixels).at(1, y));
@@ -317,7 +318,7 @@ TEST(ViewSynthesizer, AnEmptyRowTakesTheNearest) {
   map.fill(kUnknown);
   SynthesizedView view;
   ViewSynthesizer({}, execution)
-      .synthesize(photograph, photograph, map.view(), map.view(), 0.5, view);
+      .synthesize({photograph, photograph, map.view(), map.view()}, 0.5, view);
   EXPECT_EQ(view.hole_fraction, 1);
   EXPECT_EQ(std::get<Image<std::uint8_t>>(view.image.pixels).at(2, 3), 0);
 }
@@ -335,7 +336,7 @@ TEST(ViewSynthesizer, RefusesWhatDoesNotFit) {
   const auto bad_map = other_size.left_disparity.view();
   const auto attempt = [&](const Photograph& right, ImageView<const float> left_disparity,
                            ImageView<const float> right_disparity, double x) {
-    synthesizer.synthesize(pair.left, right, left_disparity, right_disparity, x, view);
+    synthesizer.synthesize({pair.left, right, left_disparity, right_disparity}, x, view);
   };
   EXPECT_THROW(attempt(other_size.right, left_map, left_map, 0.5), Error);
   EXPECT_THROW(attempt(grey.right, left_map, left_map, 0.5), Error);
@@ -393,8 +394,9 @@ void expect_given_fits_to_act(int channels) {
   const auto synthesize = [&](const ViewSynthesizer& with, double x,
                               const std::array<IntensityFit, 4>* fit) {
     SynthesizedView view;
-    with.synthesize(pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view(),
-                    x, view, fit);
+    with.synthesize(
+        {pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view()}, x, view,
+        fit);
     return view;
   };
   for (const double x : {0.5, 0.2}) {
@@ -411,7 +413,7 @@ void expect_given_fits_to_act(int channels) {
     EXPECT_EQ(bytes_of(synthesize(plain, x, &other)), bytes_of(synthesize(synthesizer, x, &other)));
     // The sums lead to the fit.
     const kernels::IntensitySums sums = synthesizer.intensity_sums(
-        pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view(), x);
+        {pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view()}, x);
     EXPECT_GT(sums.pixels, 0);
     const auto fits = fit_channels(sums, channels, 1);
     for (std::size_t c = 0; c < 4; ++c) {
@@ -436,14 +438,15 @@ TEST(ViewSynthesizer, LargeImagesAreNoOtherCase) {
   const ViewSynthesizer synthesizer({}, execution);
   const auto synthesize = [&](const std::array<IntensityFit, 4>* fit) {
     SynthesizedView view;
-    synthesizer.synthesize(pair.left, pair.right, pair.left_disparity.view(),
-                           pair.right_disparity.view(), 0.4, view, fit);
+    synthesizer.synthesize(
+        {pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view()}, 0.4, view,
+        fit);
     return view;
   };
   const SynthesizedView own = synthesize(nullptr);
   EXPECT_EQ(bytes_of(synthesize(&own.intensity)), bytes_of(own));
   const kernels::IntensitySums sums = synthesizer.intensity_sums(
-      pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view(), 0.4);
+      {pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view()}, 0.4);
   EXPECT_EQ(fit_channels(sums, 3, 1), own.intensity);
 }
 

@@ -5,8 +5,26 @@
 #include <vector>
 
 #include "engine/image/photograph.h"
+#include "engine/io/files/file_bytes.h"
 
 namespace vantage {
+
+/// The stored values of an image file: PNM is not stretched to its maximum value, floats may have
+/// any value, including NaN.
+struct DecodedImage {
+  Photograph photograph;
+  int max_value = 255;  ///< of integer values
+};
+
+/// Decodes an image of any format that read_photograph() supports. Reuses `memory` if it has the
+/// image's depth and size. Throws Error, also when out of memory.
+DecodedImage decode_image(const FileBytes& file, Photograph memory = {});
+
+/// Encodes an image file to `bytes`, whose memory is reused, in the format given by the extension
+/// of `path`. Floats of any value. Throws UsageError for an unknown extension, Error when the
+/// format cannot hold the depth or channels; both name `path`.
+void encode_photograph(const std::filesystem::path& path, const Photograph& photograph,
+                       std::vector<std::uint8_t>& bytes);
 
 /// Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR (by OpenCV) and PFM: 8-bit, 16-bit and float; grey,
 /// RGB or RGBA. The file's content determines the format, not its name; PNM values are stretched
@@ -15,11 +33,6 @@ namespace vantage {
 /// when it is missing, empty, truncated, not an image, too large according to its header, or float
 /// with NaN or infinity. Thread rule: may be called concurrently.
 Photograph read_photograph(const std::filesystem::path& path, Photograph memory = {});
-
-/// Encodes an image file to `bytes`, whose memory is reused: the content that write_photograph()
-/// writes to `path`. Errors as write_photograph().
-void encode_photograph(const std::filesystem::path& path, const Photograph& photograph,
-                       std::vector<std::uint8_t>& bytes);
 
 /// Writes by extension (.png .jpg .tiff .bmp .ppm .pgm .webp .exr .pfm), atomically. Throws Error
 /// when the folder cannot be written or the format cannot hold the depth or channels, UsageError

@@ -14,8 +14,8 @@
 #include "engine/error.h"
 #include "engine/image/finite_values.h"
 #include "engine/io/files/file_bytes.h"
-#include "engine/io/images/image_file.h"
 #include "engine/io/images/netpbm.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/npy.h"
 #include "kernels/integer_disparity/integer_disparity.h"
 
@@ -39,7 +39,7 @@ void disparity_as_npy(const fs::path& /*path*/, Disparity disparity, Bytes& byte
 }
 
 void disparity_as_floats(const fs::path& path, Disparity disparity, Bytes& bytes) {
-  encode_image(path, Photograph{with_nan(disparity)}, bytes);
+  encode_photograph(path, Photograph{with_nan(disparity)}, bytes);
 }
 
 void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes) {
@@ -54,7 +54,7 @@ void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes) {
           path.string(), disparity.at(x, y), x, y, listed_map_formats(MapContent::kConfidence)));
     }
   }
-  encode_image(path, Photograph{std::move(image)}, bytes);
+  encode_photograph(path, Photograph{std::move(image)}, bytes);
 }
 
 void depth_as_png(const fs::path& path, ImageView<const float> depth_m, Bytes& bytes) {
@@ -77,7 +77,7 @@ void depth_as_png(const fs::path& path, ImageView<const float> depth_m, Bytes& b
       image.at(x, y) = static_cast<std::uint16_t>(millimetres);
     }
   }
-  encode_image(path, Photograph{std::move(image)}, bytes);
+  encode_photograph(path, Photograph{std::move(image)}, bytes);
 }
 
 /// (u, v) interleaved; both `unknown` where one of them is not finite.
@@ -133,7 +133,7 @@ void displacements_as_floats(const fs::path& path, const DisplacementView& displ
       result.at(x, y, 2) = known ? 1.0F : 0.0F;
     }
   }
-  encode_image(path, Photograph{std::move(result)}, bytes);
+  encode_photograph(path, Photograph{std::move(result)}, bytes);
 }
 
 constexpr MapFormat kFormats[] = {

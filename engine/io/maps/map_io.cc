@@ -13,7 +13,7 @@
 #include "engine/image/finite_values.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_bytes.h"
-#include "engine/io/images/image_file.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_formats.h"
 #include "engine/io/maps/npy.h"
 

@@ -12,7 +12,7 @@
 #include "engine/matching/options/match_presets.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
-#include "engine/refinement/refinement_fields.h"
+#include "engine/refinement/refinement_options.h"
 #include "kernels/surface_fit/surface_fit.h"
 
 namespace vantage {

@@ -1,4 +1,4 @@
-#include "engine/synthesis/row_pair_warper.h"
+#include "engine/synthesis/pair_warpers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,18 +6,32 @@
 #include <limits>
 #include <type_traits>
 
+#include "engine/synthesis/surface_map.h"
 #include "engine/synthesis/warped_pair_layout.h"
 #include "engine/view_geometry/new_view.h"
 #include "kernels/colour_fetch/colour_fetch.h"
 #include "kernels/forward_warp/forward_warp.h"
 #include "kernels/pixel_row/pixel_row.h"
 #include "kernels/source_position/source_position.h"
+#include "kernels/surface_coverage/surface_coverage.h"
 
 namespace vantage {
 namespace {
 
-/// Rows of SourcePositions.
-constexpr std::size_t kPositionRows = 6;
+ViewFrame frame_of(const NewView& view) {
+  return {.width_px = view.width_px,
+          .height_px = view.height_px,
+          .infinity_disparity_px = view.infinity_disparity_px};
+}
+
+// Options for an image whose camera is `distance` baselines away. At its own position nothing
+// moves: there is no parallax to tear surfaces, and the whole image is one surface.
+SynthesisOptions options_at(double distance, SynthesisOptions options) {
+  if (distance < kSamePlace) {
+    options.disparity_gradient_limit_px = std::numeric_limits<double>::infinity();
+  }
+  return options;
+}
 
 }  // namespace
 
@@ -44,7 +58,7 @@ double RowPairWarper<T>::alpha() const {
 template <typename T>
 std::size_t RowPairWarper<T>::scratch_floats() const {
   if (!source_.left_photograph.empty()) {
-    return kPositionRows * row_floats(width(), 1);
+    return position_floats(width()) + row_floats(width(), 1);
   }
   const int padded = width() + 2 * kernels::kRowMarginPx;
   return row_floats(padded, lanes_) + row_floats(padded, 1) + row_floats(width(), 1);
@@ -86,13 +100,8 @@ template <typename T>
 void RowPairWarper<T>::warp_from_photograph(const SurfaceColours<T>& from, int y,
                                             double camera_offset, std::span<float> scratch,
                                             float* colours, float* warped_disparity_px) const {
-  const auto part = [&](std::size_t k) { return scratch.data() + k * row_floats(width(), 1); };
-  const kernels::SourcePositions positions{.column = reinterpret_cast<std::int32_t*>(part(0)),
-                                           .line = reinterpret_cast<std::int32_t*>(part(1)),
-                                           .fraction_x = part(2),
-                                           .fraction_y = part(3),
-                                           .disparity_px = part(4),
-                                           .nearness = part(5)};
+  float* const nearness = scratch.data() + position_floats(width());
+  const kernels::SourcePositions positions = positions_in(scratch, width(), nearness);
   kernels::forward_warp_row({.disparity_px = from.disparity_px.row(y),
                              .width = width(),
                              .camera_offset = camera_offset,
@@ -149,5 +158,37 @@ void RowPairWarper<T>::warp_rectified(int y, std::span<float> scratch, float* me
 template class RowPairWarper<std::uint8_t>;
 template class RowPairWarper<std::uint16_t>;
 template class RowPairWarper<float>;
+
+template <typename T>
+std::size_t SurfaceWarper<T>::working_bytes(const NewView& view, int source_width,
+                                            int source_height) {
+  return 2 * ImageWarper<T>::held_bytes(view.width_px, view.height_px) +
+         surface_map_bytes(source_width, source_height);
+}
+
+template <typename T>
+SurfaceWarper<T>::SurfaceWarper(const StereoSource<T>& source, const SynthesisOptions& options,
+                                const NewView& view, Execution& execution)
+    : alpha_(view.alpha()),
+      left_(source.left, source.left_disparity, view.from_left, frame_of(view),
+            options_at(view.distance_from_left, options), execution, source.left_photograph),
+      right_(source.right, source.right_disparity, view.from_right, frame_of(view),
+             options_at(view.distance_from_right, options), execution, source.right_photograph) {}
+
+template <typename T>
+void SurfaceWarper<T>::warp(int y, std::span<float> scratch, float* memory) const {
+  const WarpedPairLayout at(width(), left_.channels());
+  left_.warp(y, scratch, memory + at.left_colours, memory + at.left_nearness);
+  right_.warp(y, scratch, memory + at.right_colours, memory + at.right_nearness);
+}
+
+template <typename T>
+double SurfaceWarper<T>::coverage(const SurfaceEdge& edge) const {
+  return kernels::joint_coverage(alpha_, left_.coverage(edge), right_.coverage(edge));
+}
+
+template class SurfaceWarper<std::uint8_t>;
+template class SurfaceWarper<std::uint16_t>;
+template class SurfaceWarper<float>;
 
 }  // namespace vantage
