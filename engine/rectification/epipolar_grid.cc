@@ -9,7 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/image/remapped_row.h"
-#include "engine/rectification/rectified_positions.h"
+#include "engine/rectification/rectifier.h"
 
 namespace vantage {
 namespace {

@@ -41,6 +41,18 @@ class Tiles {
   int height_px_;
 };
 
+/// Adds the rectified positions of matches in photographs, where both have one.
+void add_rectified(const std::vector<PointMatch>& matches, const Rectifier& rectifier,
+                   std::vector<PointMatch>& rectified) {
+  for (const PointMatch& match : matches) {
+    const auto left = rectifier.rectified_position(Side::kLeft, match.left);
+    const auto right = rectifier.rectified_position(Side::kRight, match.right);
+    if (left && right) {
+      rectified.push_back({*left, *right});
+    }
+  }
+}
+
 std::optional<VerticalError> held_out_error(const std::vector<PointMatch>& matches, int width_px,
                                             int height_px, const RectificationOptions& options) {
   const Tiles tiles(kHeldOutTiles, width_px, height_px);
@@ -54,13 +66,7 @@ std::optional<VerticalError> held_out_error(const std::vector<PointMatch>& match
     try {
       const Rectifier rectifier(estimate_rig(parts[1 - part], width_px, height_px).calibration,
                                 width_px, height_px, options);
-      for (const PointMatch& match : parts[part]) {
-        const auto left = rectifier.rectified_position(Side::kLeft, match.left);
-        const auto right = rectifier.rectified_position(Side::kRight, match.right);
-        if (left && right) {
-          rectified.push_back({*left, *right});
-        }
-      }
+      add_rectified(parts[part], rectifier, rectified);
     } catch (const Error&) {
       return std::nullopt;
     }
@@ -118,13 +124,7 @@ void improve_rectification(Rectification& rectification, Rectifier& rectifier,
     }
     Rectifier better(rig.calibration, pair.width_px, pair.height_px, options);
     std::vector<PointMatch> rectified;
-    for (const PointMatch& match : in_photographs) {
-      const auto left = better.rectified_position(Side::kLeft, match.left);
-      const auto right = better.rectified_position(Side::kRight, match.right);
-      if (left && right) {
-        rectified.push_back({*left, *right});
-      }
-    }
+    add_rectified(in_photographs, better, rectified);
     const auto remaining = vertical_error(rectified);
     if (remaining &&
         (!rectification.remaining || remaining->rms_px < rectification.remaining->rms_px)) {

@@ -16,6 +16,12 @@ struct ImageSize {
   int height_px = 0;
 };
 
+/// A lens and the size of its images.
+struct SizedCamera {
+  Camera camera;
+  ImageSize size;  ///< 0×0 if the file does not tell
+};
+
 /// Two cameras and their relative pose: x_right = rotation · x_left + translation for a point in
 /// the left and right camera's frame.
 struct StereoCalibration {

@@ -1,7 +1,5 @@
 #include "engine/rectification/vertical_error.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -9,7 +7,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "engine/error.h"
 #include "engine/order_statistics.h"
 
 namespace vantage {
@@ -153,16 +150,6 @@ std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& match
       static_cast<double>(std::count_if(disparities.begin(), disparities.end(), is_negative)) /
       count;
   return result;
-}
-
-VerticalError measure_vertical_error(const Photograph& left, const Photograph& right) {
-  const std::vector<PointMatch> matches = match_features(left, right);
-  const auto error = vertical_error(matches);
-  if (!error) {
-    throw Error(fmt::format("the rectified images have {} points in common, expected at least {}",
-                            matches.size(), kMinMatches));
-  }
-  return *error;
 }
 
 std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right) {

@@ -40,13 +40,9 @@ inline constexpr int kMinMatches = 20;
 /// rule: may be called concurrently.
 std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& matches);
 
-/// The error of a pair of images of equal sizes. Throws Error when fewer than kMinMatches matches
-/// are found.
-VerticalError measure_vertical_error(const Photograph& left, const Photograph& right);
-
 /// Quick check of pairs that should be rectified: a few points of images reduced to 400 pixels per
 /// side if these clearly agree, else more points of images of at most 640 pixels, in a tenth of the
-/// time of measure_vertical_error(). None if there are too few matches.
+/// time of vertical_error() of all matches. None if there are too few.
 std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right);
 
 // What it costs that rows do not correspond. Thread rule: pure.

@@ -13,7 +13,7 @@
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/rotations.h"
 #include "engine/scene_graph/fused_map.h"
-#include "engine/scene_graph/scene_view_options.h"
+#include "engine/scene_graph/scene_viewer.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
@@ -111,13 +111,7 @@ std::shared_ptr<const PosedVertex> PosedViewer::make_vertex(int number) {
   made->image = undistorted(std::move(stored.image),
                             cameras_[static_cast<std::size_t>(number)].lens, execution_);
   made->disparity_px.resize(width_px_, height_px_);
-  std::vector<MapOfEdge> maps;
-  for (const SceneEdgeMap& map : stored.maps) {
-    maps.push_back({.disparity_px = map.disparity_px.view(),
-                    .is_unmatched = map.unmatched.view(),
-                    .edge_length = map.length});
-  }
-  fuse_maps(maps, unit_length_, synthesizer_.options().disparity_gradient_limit_px,
+  fuse_maps(maps_of(stored), unit_length_, synthesizer_.options().disparity_gradient_limit_px,
             made->disparity_px.view(), execution_);
   return made;
 }

@@ -2,30 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
 #include <optional>
 #include <string>
 
 #include "engine/error.h"
 #include "engine/io/files/csv_records.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/text_lines.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<double> number_in(const std::string& field) {
-  double value = 0;
-  const char* end = field.data() + field.size();
-  const auto [stop, error] = std::from_chars(field.data(), end, value);
-  if (error != std::errc() || stop != end || !std::isfinite(value)) {
-    return std::nullopt;
-  }
-  return value;
-}
 
 }  // namespace
 
@@ -44,7 +33,7 @@ std::vector<SceneImage> parse_position_list(std::string_view text, const fs::pat
       continue;
     }
     const auto coordinate = [&](std::size_t field) {
-      const std::optional<double> value = number_in(fields[field]);
+      const std::optional<double> value = finite_number(fields[field]);
       if (!value) {
         records.fail(records.record_line(),
                      fmt::format("{} is '{}', expected a finite number", field == 1 ? "x" : "y",

@@ -15,6 +15,7 @@
 #include "engine/error.h"
 #include "engine/image/eight_bit.h"
 #include "engine/rectification/rectifier.h"
+#include "engine/refinement/refinement.h"
 #include "engine/scene_graph/cloud_geometry.h"
 #include "engine/scene_graph/fused_map.h"
 #include "engine/scene_graph/posed_edges.h"
@@ -34,13 +35,7 @@ struct CloudImage {
 
 /// Disparities become unknown where `mask` is not 0.
 void forget_where(const Mask& mask, DisparityMap& disparity_px, Execution& execution) {
-  execution.for_each_row(disparity_px.height(), [&](int y) {
-    for (int x = 0; x < disparity_px.width(); ++x) {
-      if (mask.at(x, y) != 0) {
-        disparity_px.at(x, y) = kUnknownDisparity;
-      }
-    }
-  });
+  fill_unmatched(mask, Side::kLeft, Fill::kNone, execution, disparity_px);
 }
 
 struct Neighbour {
@@ -149,15 +144,12 @@ struct SceneCloudMaker::Content {
 
   /// Of matched pixels only: what is filled is a guess.
   void fuse_matches(SceneVertex& stored, DisparityMap& disparity_px) const {
-    std::vector<MapOfEdge> maps;
     for (SceneEdgeMap& map : stored.maps) {
       forget_where(map.unmatched, map.disparity_px, execution_);
-      maps.push_back({.disparity_px = map.disparity_px.view(),
-                      .is_unmatched = map.unmatched.view(),
-                      .edge_length = map.length});
     }
     disparity_px.resize(width_px_, height_px_);
-    fuse_maps(maps, unit_length_, options_.tolerance_px, disparity_px.view(), execution_);
+    fuse_maps(maps_of(stored), unit_length_, options_.tolerance_px, disparity_px.view(),
+              execution_);
     Mask outlines;
     outline_mask(disparity_px.view(), static_cast<double>(kSurfaceLimit_px), execution_, outlines);
     forget_where(outlines, disparity_px, execution_);

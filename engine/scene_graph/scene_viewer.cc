@@ -8,8 +8,6 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/scene_graph/fused_map.h"
-#include "engine/scene_graph/scene_view_options.h"
 #include "engine/view_geometry/view_pose.h"
 
 namespace vantage {
@@ -31,6 +29,24 @@ PhotographTriple triple_of(const SceneSources& sources) {
 }
 
 }  // namespace
+
+SynthesisOptions with_moving_brightness(SynthesisOptions options) {
+  if (options.warp == WarpColour::kForward) {
+    throw UsageError("warp is forward, expected one-pass for views of a scene");
+  }
+  options.gamma.reset();
+  return options;
+}
+
+std::vector<MapOfEdge> maps_of(const SceneVertex& vertex) {
+  std::vector<MapOfEdge> maps;
+  for (const SceneEdgeMap& map : vertex.maps) {
+    maps.push_back({.disparity_px = map.disparity_px.view(),
+                    .is_unmatched = map.unmatched.view(),
+                    .edge_length = map.length});
+  }
+  return maps;
+}
 
 SceneViewer::SceneViewer(const SceneLayout& layout, LoadVertex load_vertex,
                          const SynthesisOptions& options, Execution& execution)
@@ -101,14 +117,10 @@ std::shared_ptr<const SceneSources> SceneViewer::make_sources(const ScenePlace& 
   for (std::size_t k = 0; k < sources->vertices.size(); ++k) {
     sources->loaded[k] = vertex(sources->vertices[k]);
     const SceneVertex& loaded = *sources->loaded[k];
-    std::vector<MapOfEdge> maps;
-    for (const SceneEdgeMap& map : loaded.maps) {
-      const bool is_own = std::find(sources->vertices.begin(), sources->vertices.end(),
-                                    map.neighbour) != sources->vertices.end();
-      maps.push_back({.disparity_px = map.disparity_px.view(),
-                      .is_unmatched = map.unmatched.view(),
-                      .edge_length = map.length,
-                      .is_own = is_own});
+    std::vector<MapOfEdge> maps = maps_of(loaded);
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      maps[i].is_own =
+          std::ranges::find(sources->vertices, loaded.maps[i].neighbour) != sources->vertices.end();
     }
     DisparityMap& fused = sources->disparity_px[k];
     fused.resize(loaded.image.width(), loaded.image.height());

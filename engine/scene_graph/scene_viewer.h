@@ -9,6 +9,7 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
+#include "engine/scene_graph/fused_map.h"
 #include "engine/scene_graph/recently_used.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/synthesis/view_synthesizer.h"
@@ -29,6 +30,9 @@ struct SceneVertex {
   std::vector<SceneEdgeMap> maps;  ///< of all its edges, at least one; of the image's size
 };
 
+/// Its maps for fuse_maps(), all of own edges. They refer to it.
+std::vector<MapOfEdge> maps_of(const SceneVertex& vertex);
+
 /// Sources of the views of one edge or triangle. Immutable, so views can be rendered concurrently.
 struct SceneSources {
   std::vector<int> vertices;  ///< two or three
@@ -45,6 +49,10 @@ struct PreparedSceneView {
   ScenePlace place;
   std::shared_ptr<const SceneSources> sources;
 };
+
+/// `options` for views of a scene: brightness moves from image to image. Throws UsageError if they
+/// warp forward. Thread rule: pure.
+SynthesisOptions with_moving_brightness(SynthesisOptions options);
 
 /// Renders new views of a scene graph (3.4): inside a triangle from its three images, each warped
 /// to the view by its own disparities and combined by barycentric weights; on an edge, or outside

@@ -34,10 +34,6 @@ std::string system_message(int error_number) {
   return std::generic_category().message(error_number);
 }
 
-[[noreturn]] void fail_to_write(const fs::path& path, int error_number) {
-  throw Error(fmt::format("cannot write {}: {}", path.string(), system_message(error_number)));
-}
-
 std::span<const std::uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }

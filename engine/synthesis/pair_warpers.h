@@ -7,7 +7,6 @@
 #include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/synthesis/image_warper.h"
-#include "engine/synthesis/surface_colours.h"
 #include "engine/synthesis/synthesis_options.h"
 #include "engine/synthesis/unrectified_pair.h"
 #include "engine/view_geometry/new_view.h"

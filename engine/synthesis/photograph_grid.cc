@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/rectification/rectified_positions.h"
+#include "engine/rectification/rectifier.h"
 
 namespace vantage {
 namespace {

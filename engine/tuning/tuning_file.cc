@@ -1,8 +1,6 @@
 #include "engine/tuning/tuning_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -164,23 +162,6 @@ Json entries_of(const std::string& text, const std::string& name) {
   return document["entries"];
 }
 
-/// Keeps other processes from changing the file; not on file systems without locks.
-class FileLock {
- public:
-  explicit FileLock(const fs::path& path)
-      : file_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
-    if (!file_.valid()) {
-      throw Error(fmt::format("cannot write {}: {}", path.string(),
-                              std::generic_category().message(errno)));
-    }
-    while (::flock(file_.get(), LOCK_EX) != 0 && errno == EINTR) {
-    }
-  }
-
- private:
-  FileDescriptor file_;  // closing it unlocks
-};
-
 /// Reads the entries of `path`, calls `change`, and writes them if it returns true.
 void change_entries(const fs::path& path,
                     const std::function<bool(std::vector<TuningEntry>&)>& change) {
@@ -190,7 +171,9 @@ void change_entries(const fs::path& path,
   if (error) {
     throw Error(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
   }
-  const FileLock lock(folder / fmt::format(".{}.lock", path.filename().string()));
+  const fs::path lock_file = folder / fmt::format(".{}.lock", path.filename().string());
+  create_text_file(lock_file, "");
+  const FileLock lock(lock_file, FileLock::Wait::kYes);  // keeps others from changing the file
   TuningFileContent content = read_tuning_file(path);
   if (content.is_foreign) {
     throw Error(fmt::format("{}; expected a tuning file or none, it is left as it is",

@@ -9,7 +9,7 @@
 
 #include "engine/pose_estimation/feature_tracks.h"
 #include "engine/rectification/camera_pose.h"
-#include "engine/view_geometry/sized_camera.h"
+#include "engine/rectification/stereo_calibration.h"
 
 namespace vantage {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/rectification/camera_pose.h"
-#include "engine/view_geometry/sized_camera.h"
+#include "engine/rectification/stereo_calibration.h"
 
 namespace vantage {
 

@@ -60,7 +60,9 @@ TEST_F(RectifyTest, FromTheImagesAlone) {
   const Photograph left = read_photograph(fs::path(out) / "raw-left.png");
   const Photograph right = read_photograph(fs::path(out) / "raw-right.png");
   EXPECT_EQ(left.width(), 320);
-  EXPECT_LT(measure_vertical_error(left, right).systematic_px, 0.2);
+  const auto error = vertical_error(match_features(left, right));
+  ASSERT_TRUE(error);
+  EXPECT_LT(error->systematic_px, 0.2);
   const Photograph valid = read_photograph(mask);
   const auto& pixels = std::get<Image<std::uint8_t>>(valid.pixels);
   EXPECT_EQ(pixels.at(160, 120), 255);

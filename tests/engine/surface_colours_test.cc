@@ -1,4 +1,4 @@
-#include "engine/synthesis/surface_colours.h"
+#include "engine/synthesis/image_warper.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -17,11 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, int error_number) {
-  throw Error(fmt::format("cannot write {}: {}", path.string(),
-                          std::generic_category().message(error_number)));
-}
-
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
@@ -35,7 +30,7 @@ void fill(const fs::path& target, std::span<const std::uint8_t> bytes, const fs:
   // Created again if another process has removed it.
   const FileDescriptor file(::open(target.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
   if (!file.valid() || !write_all(file.get(), bytes)) {
-    fail(path, errno);
+    fail_to_write(path, errno);
   }
 }
 
@@ -68,7 +63,7 @@ AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(th
     const int error = errno;
     forget_unfinished(temporary_path_);
     if (error != EEXIST) {
-      fail(given_path_, error);
+      fail_to_write(given_path_, error);
     }
   }
 }
@@ -94,10 +89,10 @@ void AtomicFile::flush_name() const {
 
 void AtomicFile::commit() {
   if (const int error = flush(); error != 0) {
-    fail(given_path_, error);
+    fail_to_write(given_path_, error);
   }
   if (::rename(temporary_path_.c_str(), final_path_.c_str()) != 0) {
-    fail(given_path_, errno);
+    fail_to_write(given_path_, errno);
   }
   committed_ = true;
   forget_unfinished(temporary_path_);
@@ -115,10 +110,15 @@ bool AtomicFile::commit_if_absent() {
     return false;
   }
   if (flush_error != 0) {
-    fail(given_path_, flush_error);
+    fail_to_write(given_path_, flush_error);
   }
   commit();
   return true;
+}
+
+void fail_to_write(const fs::path& path, int error_number) {
+  throw Error(fmt::format("cannot write {}: {}", path.string(),
+                          std::generic_category().message(error_number)));
 }
 
 fs::path through_links(const fs::path& path) {

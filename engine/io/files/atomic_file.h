@@ -7,6 +7,9 @@
 
 namespace vantage {
 
+/// Throws Error for an errno.
+[[noreturn]] void fail_to_write(const std::filesystem::path& path, int error_number);
+
 /// Target of `path` if it is a link, else itself. Circular links are returned unchanged.
 std::filesystem::path through_links(const std::filesystem::path& path);
 

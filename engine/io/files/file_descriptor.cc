@@ -42,8 +42,11 @@ void flush_folder(const std::filesystem::path& folder) {
 
 FileLock::FileLock(const std::filesystem::path& path, Wait wait)
     : file_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
-  is_held_ = ::flock(file_.get(), LOCK_EX | (wait == Wait::kNo ? LOCK_NB : 0)) == 0 ||
-             errno != EWOULDBLOCK;
+  int result = 0;
+  do {
+    result = ::flock(file_.get(), LOCK_EX | (wait == Wait::kNo ? LOCK_NB : 0));
+  } while (result != 0 && errno == EINTR);
+  is_held_ = result == 0 || errno != EWOULDBLOCK;
 }
 
 }  // namespace vantage

@@ -22,7 +22,6 @@
 #include "engine/io/images/opencv_setup.h"
 #include "engine/io/images/png_decoder.h"
 #include "engine/io/images/png_encoder.h"
-#include "engine/io/images/png_structure.h"
 
 namespace vantage {
 namespace {

@@ -13,7 +13,6 @@
 
 #include "engine/error.h"
 #include "engine/image/finite_values.h"
-#include "engine/io/files/file_bytes.h"
 #include "engine/io/images/netpbm.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/npy.h"
@@ -159,7 +158,9 @@ constexpr MapFormat kFormats[] = {
     {.extension = ".npy",
      .encode_disparity = disparity_as_npy,
      .encode_depth = disparity_as_npy,
-     .encode_displacements = displacements_as_npy},
+     .encode_displacements = displacements_as_npy,
+     .recognizes = is_npy,
+     .decode = decode_npy},
 };
 
 }  // namespace
@@ -184,6 +185,13 @@ const MapFormat* find_map_format(const fs::path& path, MapContent content) {
   const std::string extension = lower_case_extension(path);
   const auto* const found = std::ranges::find_if(kFormats, [&](const MapFormat& format) {
     return format.extension == extension && format.can_hold(content);
+  });
+  return found == std::end(kFormats) ? nullptr : found;
+}
+
+const MapFormat* find_map_format(const FileBytes& file) {
+  const auto* const found = std::ranges::find_if(kFormats, [&](const MapFormat& format) {
+    return format.recognizes != nullptr && format.recognizes(file);
   });
   return found == std::end(kFormats) ? nullptr : found;
 }

@@ -10,6 +10,7 @@
 #include "engine/image/displacement_view.h"
 #include "engine/image/image.h"
 #include "engine/image/side.h"
+#include "engine/io/files/file_bytes.h"
 
 namespace vantage {
 
@@ -42,6 +43,11 @@ struct MapFormat {
                                const DisplacementView& displacements, Side side,
                                std::vector<std::uint8_t>& bytes) = nullptr;
 
+  /// Of formats that are no images: whether a file is of this one, and its values. decode() throws
+  /// Error for damaged files, before it takes memory for what they cannot hold.
+  bool (*recognizes)(const FileBytes& file) = nullptr;
+  Image<float> (*decode)(const FileBytes& file) = nullptr;
+
   [[nodiscard]] bool can_hold(MapContent content) const;
 };
 
@@ -59,6 +65,9 @@ std::span<const MapFormat> map_formats();
 /// The format given by the extension of `path`, in any letter case, if it can hold `content`; else
 /// null.
 const MapFormat* find_map_format(const std::filesystem::path& path, MapContent content);
+
+/// The format of a file that is no image, by its content; else null.
+const MapFormat* find_map_format(const FileBytes& file);
 
 /// For messages: ".pfm, .png, .tiff, .exr or .npy". `prefix` replaces the dots.
 std::string listed_map_formats(MapContent content, std::string_view prefix = ".");

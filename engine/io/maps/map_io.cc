@@ -15,7 +15,6 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_formats.h"
-#include "engine/io/maps/npy.h"
 
 namespace vantage {
 namespace {
@@ -59,8 +58,8 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
   }
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
-  if (is_npy(file)) {
-    return with_nan(decode_npy(file).view());
+  if (const MapFormat* const format = find_map_format(file)) {
+    return with_nan(format->decode(file).view());
   }
   const bool is_png = file.has_at(0, "\x89PNG");
   const DecodedImage stored = decode_image(file);
@@ -88,8 +87,8 @@ DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
 Image<float> read_float_image(const std::filesystem::path& path) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
-  if (is_npy(file)) {
-    return with_nan(decode_npy(file).view());
+  if (const MapFormat* const format = find_map_format(file)) {
+    return with_nan(format->decode(file).view());
   }
   const DecodedImage stored = decode_image(file);
   const auto* const floats = std::get_if<Image<float>>(&stored.photograph.pixels);

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <span>
-#include <system_error>
 #include <utility>
 
 #include "engine/error.h"
@@ -16,15 +15,10 @@
 namespace vantage {
 namespace {
 
-[[noreturn]] void fail_to_write(const std::filesystem::path& path) {
-  throw Error(
-      fmt::format("cannot write {}: {}", path.string(), std::generic_category().message(errno)));
-}
-
 FileDescriptor open_to_write(const std::filesystem::path& file, const std::filesystem::path& path) {
   FileDescriptor descriptor(::open(file.c_str(), O_WRONLY | O_CLOEXEC));
   if (!descriptor.valid()) {
-    fail_to_write(path);
+    fail_to_write(path, errno);
   }
   return descriptor;
 }
@@ -60,7 +54,7 @@ void NpyVolumeFile::start(const VolumeShape& shape) {
   const std::vector<std::uint8_t> header = npy_float_header(file_shape());
   first_byte_ = header.size();
   if (!write_all_at(file_.get(), 0, header)) {
-    fail_to_write(path_);
+    fail_to_write(path_, errno);
   }
 }
 
@@ -86,7 +80,7 @@ void NpyVolumeFile::write_part(int x, int y, int columns, const float* values) c
       reinterpret_cast<const std::uint8_t*>(values),
       sizeof(float) * candidates * static_cast<std::size_t>(columns));
   if (!write_all_at(file_.get(), first_byte_ + sizeof(float) * candidates * pixel, bytes)) {
-    fail_to_write(path_);
+    fail_to_write(path_, errno);
   }
 }
 

@@ -58,16 +58,18 @@ class FrameSource {
 
   /// Number in the name of frame `index`'s file, the last one of several ("left_0012.png": 12);
   /// empty if there is none, and for videos.
-  [[nodiscard]] virtual std::optional<long long> number_of(int index) const = 0;
+  [[nodiscard]] virtual std::optional<long long> number_of(int /*index*/) const {
+    return std::nullopt;
+  }
 
   /// Empty for image files.
-  [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const = 0;
+  [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const { return std::nullopt; }
 
   /// Times of all frames of a video of variable rate; else empty.
   [[nodiscard]] virtual std::optional<FrameTimes> frame_times() const { return std::nullopt; }
 
   /// The video file, which may hold sound; empty for image files.
-  [[nodiscard]] virtual std::filesystem::path video_file() const = 0;
+  [[nodiscard]] virtual std::filesystem::path video_file() const { return {}; }
 
   /// The files that frames are read from.
   [[nodiscard]] virtual std::vector<std::filesystem::path> files() const { return {video_file()}; }

@@ -19,8 +19,6 @@ class ImageSequence : public FrameSource {
   [[nodiscard]] int frame_count() const final { return count_; }
   [[nodiscard]] std::string describe(int index) const final { return path(index).string(); }
   [[nodiscard]] std::optional<long long> number_of(int index) const final;
-  [[nodiscard]] std::optional<FrameRate> frame_rate() const final { return std::nullopt; }
-  [[nodiscard]] std::filesystem::path video_file() const final { return {}; }
   [[nodiscard]] std::vector<std::filesystem::path> files() const final;
   [[nodiscard]] std::string identity() const final;
 

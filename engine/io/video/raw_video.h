@@ -34,9 +34,7 @@ class StreamedVideo final : public FrameSource {
   void skip_to(int index) override;
   [[nodiscard]] int frame_count() const override { return kUnknownFrames; }
   [[nodiscard]] std::string describe(int index) const override;
-  [[nodiscard]] std::optional<long long> number_of(int) const override { return std::nullopt; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override { return rate_; }
-  [[nodiscard]] std::filesystem::path video_file() const override { return {}; }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {}; }
   [[nodiscard]] std::string identity() const override { return "standard input: a stream"; }
 

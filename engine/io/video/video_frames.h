@@ -22,7 +22,6 @@ class VideoFrames : public FrameSource {
   void skip_to(int index) override;
   [[nodiscard]] int frame_count() const override { return frame_count_; }
   [[nodiscard]] std::string describe(int index) const override;
-  [[nodiscard]] std::optional<long long> number_of(int) const override { return std::nullopt; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override {
     return reader_->frame_rate();
   }
