@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// The bytes of base64 text with padding, letter by letter (RFC 4648).
 inline std::vector<std::uint8_t> decoded_base64(std::string_view text) {
@@ -41,4 +41,4 @@ inline std::vector<std::uint8_t> decoded_base64(std::string_view text) {
   return bytes;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// Keys' cubic convolution kernel, a = −½, as the paper defines it.
 inline double keys(double t) {
@@ -13,4 +13,4 @@ inline double keys(double t) {
   return t < 2 ? -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2 : 0;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

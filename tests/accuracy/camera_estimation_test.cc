@@ -1,24 +1,13 @@
 // Cameras of hand-held photographs, against those that made the images.
 #include "engine/pose_estimation/camera_estimation.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
 
-#include "engine/error.h"
 #include "engine/generation/layered_scene.h"
-#include "tests/temporary_folder.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace camera_estimation_test {
+namespace vantage::camera_estimation_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -159,5 +148,4 @@ TEST_F(HandHeld, ImagesOfNoCommonSceneAreRefused) {
                UsageError);
 }
 
-}  // namespace camera_estimation_test
-}  // namespace vantage
+}  // namespace vantage::camera_estimation_test

@@ -1,24 +1,10 @@
 #include "engine/rectification/feature_matches.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <thread>
-
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/unrectified_pair.h"
 
-namespace vantage {
-namespace feature_matches_test {
-
-using test::error_of;
-
-Execution& execution() {
-  static Execution two_threads({.threads = 2});
-  return two_threads;
-}
+namespace vantage::feature_matches_test {
 
 struct ScenePair {
   SceneRendering left;
@@ -64,14 +50,12 @@ TEST(FeatureMatches, AreWhereTheSceneIs) {
 }
 
 TEST(FeatureMatches, FindPartnersDespiteTurnedCamerasAndExposure) {
-  const test::UnrectifiedPair pair = test::unrectified_pair(execution());
+  const RenderedPair pair = unrectified_pair(execution());
   Photograph dark;
   const auto& bright = std::get<Image<std::uint8_t>>(pair.right.pixels);
   Image<std::uint16_t> sixteen(bright.width(), bright.height(), bright.channels());
-  for (int y = 0; y < bright.height(); ++y) {
-    for (int i = 0; i < bright.width() * bright.channels(); ++i) {
-      sixteen.row(y)[i] = static_cast<std::uint16_t>(40 * bright.row(y)[i] + 500);
-    }
+  for (const auto [i, y] : positions_of(bright.width() * bright.channels(), bright.height())) {
+    sixteen.row(y)[i] = static_cast<std::uint16_t>(40 * bright.row(y)[i] + 500);
   }
   dark.pixels = std::move(sixteen);
   const Eigen::Vector3d t = pair.calibration.translation;
@@ -106,7 +90,7 @@ TEST(FeatureMatches, OfReducedImagesAreInPixelsOfTheFullOnes) {
 }
 
 TEST(FeatureMatches, NoneWhereThereIsNothing) {
-  const Photograph textured = test::crop(scene_pair().left.image, 100, 80, 96, 72);
+  const Photograph textured = crop(scene_pair().left.image, 100, 80, 96, 72);
   for (const FeatureKind kind : kKinds) {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {37, 1}, {64, 48}}) {
       Image<std::uint8_t> flat(width, height);
@@ -121,8 +105,8 @@ TEST(FeatureMatches, NoneWhereThereIsNothing) {
 
 TEST(FeatureMatches, AreTheSameFromAnyThread) {
   for (const FeatureKind kind : kKinds) {
-    const Photograph left = test::crop(scene_pair().left.image, 80, 60, 160, 120);
-    const Photograph right = test::crop(scene_pair().right.image, 70, 60, 160, 120);
+    const Photograph left = crop(scene_pair().left.image, 80, 60, 160, 120);
+    const Photograph right = crop(scene_pair().right.image, 70, 60, 160, 120);
     const auto find = [&] { return match_features(left, right, {.kind = kind}); };
     const auto expected = find();
     ASSERT_GT(expected.size(), 15U);
@@ -151,5 +135,4 @@ TEST(FeatureMatches, OptionsHaveLimits) {
             "largest-side is 63, expected at least 64");
 }
 
-}  // namespace feature_matches_test
-}  // namespace vantage
+}  // namespace vantage::feature_matches_test

@@ -1,48 +1,36 @@
 // The methods against the plain transcription on a rendered scene, and on a photographed one where
 // there is one: textures, slanted surfaces and occlusions that random pairs lack.
-#include <gtest/gtest.h>
-
-#include <filesystem>
 
 #include "engine/generation/layered_scene.h"
 #include "engine/io/images/photograph_io.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace photograph_methods_test {
-
-using test::crop;
-using test::expect_equals_oracle;
-using test::method_cases;
-using test::MethodCase;
-using test::PhotographPair;
-using test::tolerance_of;
+namespace vantage::photograph_methods_test {
 
 class PhotographMethods : public ::testing::TestWithParam<MethodCase> {
  protected:
   static void expect_equal(const PhotographPair& pair, DisparityRange range, const char* what) {
-    Execution execution({.threads = 2});
     MatchOptions options = GetParam().options;
     options.disparities = range;
-    expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()), what);
+    expect_equals_oracle(pair, options, execution(), tolerance_of(options.resolved()), what);
   }
 };
 
 TEST_P(PhotographMethods, EqualTheOracleOnARenderedScene) {
-  if (test::is_stepped(GetParam())) {
+  if (is_stepped(GetParam())) {
     GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
   }
   static const PhotographPair pair = [] {
-    Execution execution({.threads = 2});
     LayeredSceneOptions options;
     options.width_px = 160;
     options.height_px = 120;
     options.far_disparity_px = 3;
     options.near_disparity_px = 18;
     options.noise_sigma = 1;
-    const LayeredScene scene(options, execution);
+    const LayeredScene scene(options, execution());
     return PhotographPair{crop(scene.render({0, 0}, 0).image, 50, 38, 60, 44),
                           crop(scene.render({1, 0}, 0).image, 50, 38, 60, 44)};
   }();
@@ -50,7 +38,7 @@ TEST_P(PhotographMethods, EqualTheOracleOnARenderedScene) {
 }
 
 TEST_P(PhotographMethods, EqualTheOracleOnAPhotographedScene) {
-  if (test::is_stepped(GetParam())) {
+  if (is_stepped(GetParam())) {
     GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
   }
   const std::filesystem::path folder = test_paths::shared_data() / "cones_half";
@@ -65,5 +53,4 @@ TEST_P(PhotographMethods, EqualTheOracleOnAPhotographedScene) {
 INSTANTIATE_TEST_SUITE_P(Methods, PhotographMethods, ::testing::ValuesIn(method_cases({})),
                          [](const auto& instance) { return instance.param.name; });
 
-}  // namespace photograph_methods_test
-}  // namespace vantage
+}  // namespace vantage::photograph_methods_test

@@ -1,21 +1,11 @@
 // Repetitive texture on a slanted surface: a carpet whose weave repeats every few pixels and whose
 // disparity grows towards the camera. Coarse pixels cover several disparities of it.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-#include <optional>
-#include <random>
-#include <utility>
-#include <vector>
 
 #include "engine/matching/stereo_matcher.h"
 
-namespace vantage {
-namespace repetitive_floor_test {
+#include "tests/engine/engine_test.h"
+
+namespace vantage::repetitive_floor_test {
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
@@ -67,17 +57,15 @@ double grey_at(double x, double y, int camera, const Irregularity& irregularity)
 
 Photograph photographed(int camera, const Irregularity& irregularity, std::mt19937& random) {
   Image<std::uint8_t> image(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      double sum = 0;
-      for (int i = 0; i < kSamples * kSamples; ++i) {
-        sum += grey_at(x + (i % kSamples + 0.5) / kSamples - 0.5,
-                       y + (i / kSamples + 0.5) / kSamples - 0.5, camera, irregularity);
-      }
-      const double noise = static_cast<double>(random() % 7) - 3;
-      image.at(x, y) = static_cast<std::uint8_t>(
-          std::clamp(std::lround(sum / (kSamples * kSamples) + noise), 0L, 255L));
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    double sum = 0;
+    for (int i = 0; i < kSamples * kSamples; ++i) {
+      sum += grey_at(x + (i % kSamples + 0.5) / kSamples - 0.5,
+                     y + (i / kSamples + 0.5) / kSamples - 0.5, camera, irregularity);
     }
+    const double noise = static_cast<double>(random() % 7) - 3;
+    image.at(x, y) = static_cast<std::uint8_t>(
+        std::clamp(std::lround(sum / (kSamples * kSamples) + noise), 0L, 255L));
   }
   return {std::move(image)};
 }
@@ -99,7 +87,6 @@ TEST(RepetitiveFloor, IsFoundByThePresets) {
   const Irregularity irregularity(random);
   const Photograph left = photographed(0, irregularity, random);
   const Photograph right = photographed(1, irregularity, random);
-  Execution execution({.threads = 2});
   for (const MatchPreset preset : {MatchPreset::kFast, MatchPreset::kBalanced}) {
     MatchOptions options;
     options.preset = preset;
@@ -107,7 +94,7 @@ TEST(RepetitiveFloor, IsFoundByThePresets) {
     const auto bad_with = [&](std::optional<double> slant_penalty) {
       options.parameters.slant_penalty = slant_penalty;
       DisparityMaps maps;
-      StereoMatcher(options, execution).match(left, right, {.right = false}, maps);
+      StereoMatcher(options, execution()).match(left, right, {.right = false}, maps);
       return bad_percent(maps.left.disparity_px);
     };
     EXPECT_LT(bad_with(std::nullopt), 2);
@@ -116,5 +103,4 @@ TEST(RepetitiveFloor, IsFoundByThePresets) {
   }
 }
 
-}  // namespace repetitive_floor_test
-}  // namespace vantage
+}  // namespace vantage::repetitive_floor_test

@@ -1,19 +1,6 @@
 #include "engine/scene_graph/scene_builder.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <filesystem>
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
@@ -21,25 +8,11 @@
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/scene_graph/rectified_edge.h"
-#include "tests/engine/identical_maps.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace scene_builder_test {
+namespace vantage::scene_builder_test {
 
 namespace fs = std::filesystem;
-using test::bytes_of;
-using test::error_of;
-using test::put_text;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-
-Execution& threads() {
-  static Execution execution({.threads = 2});
-  return execution;
-}
 
 LayeredSceneOptions small_scene() {
   LayeredSceneOptions options;
@@ -69,7 +42,7 @@ class SceneBuilderTest : public ::testing::Test {
     SceneBuildOptions options{.match = {}, .settings = settings, .copy_images = copy_images};
     options.match.preset = MatchPreset::kQuality;  // these tests are about views, not maps
     options.match.disparities = {0, 8};
-    return {place_, images, options, threads()};
+    return {place_, images, options, execution()};
   }
   void build(const std::vector<SceneImage>& images, const std::string& settings = "{}") const {
     SceneBuilder one = builder(images, settings);
@@ -88,7 +61,7 @@ class SceneBuilderTest : public ::testing::Test {
     return files;
   }
 
-  LayeredScene scene_{small_scene(), threads()};
+  LayeredScene scene_{small_scene(), execution()};
   TemporaryFolder folder_;
   fs::path place_ = folder_.path() / "scene";
 };
@@ -99,11 +72,11 @@ TEST_F(SceneBuilderTest, AViewLeftOutIsMadeFromItsNeighbours) {
   const SceneLayout layout(stored.positions(), stored.names());
   require_complete(stored, layout.edges(), place_);
   SceneViewer viewer(
-      layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, threads());
+      layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, execution());
   SynthesizedView view;
   viewer.synthesize({1, 0}, view);
   const ViewScores scores =
-      evaluate_view(view.image, scene_.render(SceneView{1, 0}, 0).image, threads());
+      evaluate_view(view.image, scene_.render(SceneView{1, 0}, 0).image, execution());
   EXPECT_GE(scores.psnr_db, 27);
 }
 
@@ -117,11 +90,11 @@ TEST_F(SceneBuilderTest, AGridIsMatchedAlongRowsAndColumns) {
   ASSERT_EQ(stored.edges.size(), 4U);
   const SceneLayout layout(stored.positions(), stored.names());
   SceneViewer viewer(
-      layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, threads());
+      layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, execution());
   SynthesizedView view;
   viewer.synthesize({0.2, 0.3}, view);
   const ViewScores scores =
-      evaluate_view(view.image, scene_.render(SceneView{0.2, 0.3}, 0).image, threads());
+      evaluate_view(view.image, scene_.render(SceneView{0.2, 0.3}, 0).image, execution());
   EXPECT_GE(scores.psnr_db, 29);
 }
 
@@ -136,13 +109,13 @@ TEST_F(SceneBuilderTest, ATriangleIsBetterThanItsEdges) {
     const StoredScene stored = read_scene(place_);
     const SceneLayout layout(stored.positions(), stored.names());
     SceneViewer viewer(
-        layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, threads());
+        layout, [&](int vertex) { return load_vertex(place_, stored, vertex); }, {}, execution());
     double sum = 0;
     for (const ScenePosition& position : kWithin) {
       SynthesizedView view;
       EXPECT_EQ(viewer.synthesize(position, view).count, vertices);
       const Photograph truth = scene_.render(SceneView{position.x, position.y}, 0).image;
-      sum += evaluate_view(view.image, truth, threads()).psnr_db;
+      sum += evaluate_view(view.image, truth, execution()).psnr_db;
     }
     return sum / std::size(kWithin);
   };
@@ -166,7 +139,7 @@ TEST_F(SceneBuilderTest, AColumnIsARowOfTransposedImages) {
   }
   build(images);
   const DisparityMap of_column = read_disparity(place_ / "maps/000-001-first.pfm");
-  EXPECT_TRUE(test::identical(transposed(of_column.view()), of_row));
+  EXPECT_TRUE(identical(transposed(of_column.view()), of_row));
   EXPECT_TRUE(read_scene(place_).edges.at(0).edge.is_vertical);
 }
 
@@ -280,8 +253,7 @@ TEST_F(SceneBuilderTest, CopiedImagesMakeTheFolderDependOnNothingElse) {
   fs::rename(place_, folder_.path() / "elsewhere");
   place_ = folder_.path() / "elsewhere";
   const StoredScene stored = read_scene(place_);
-  EXPECT_TRUE(
-      test::same(load_vertex(place_, stored, 2).image, scene_.render(SceneView{1, 0}, 0).image));
+  EXPECT_TRUE(same(load_vertex(place_, stored, 2).image, scene_.render(SceneView{1, 0}, 0).image));
 
   // Built from the copies: they are not copied again.
   std::vector<SceneImage> copies;
@@ -321,13 +293,11 @@ TEST_F(SceneBuilderTest, ObliqueNeighboursAreMatched) {
       const DisparityMap truth = scene_.render(SceneView{at.x, at.y}, 0).disparity;
       int matched = 0;
       int wrong = 0;
-      for (int y = 0; y < map.height(); ++y) {
-        for (int x = 0; x < map.width(); ++x) {
-          if (unmatched.at(x, y) == 0) {
-            ++matched;
-            const double expected = truth.at(x, y) * edge.length;
-            wrong += std::abs(map.at(x, y) - expected) > 1 ? 1 : 0;
-          }
+      for (const auto [x, y] : positions_of(map)) {
+        if (unmatched.at(x, y) == 0) {
+          ++matched;
+          const double expected = truth.at(x, y) * edge.length;
+          wrong += std::abs(map.at(x, y) - expected) > 1 ? 1 : 0;
         }
       }
       const double pixels = map.width() * map.height();
@@ -339,14 +309,14 @@ TEST_F(SceneBuilderTest, ObliqueNeighboursAreMatched) {
     const StoredScene scene = read_scene(place_);
     const SceneLayout layout(scene.positions(), scene.names());
     SceneViewer viewer(
-        layout, [&](int vertex) { return load_vertex(place_, scene, vertex); }, {}, threads());
+        layout, [&](int vertex) { return load_vertex(place_, scene, vertex); }, {}, execution());
     SynthesizedView view;
     const ScenePosition middle{(places[0].x + places[1].x) / 2, (places[0].y + places[1].y) / 2};
     EXPECT_FALSE(viewer.synthesize(middle, view).is_outside);
-    EXPECT_GE(
-        evaluate_view(view.image, scene_.render(SceneView{middle.x, middle.y}, 0).image, threads())
-            .psnr_db,
-        27);
+    EXPECT_GE(evaluate_view(view.image, scene_.render(SceneView{middle.x, middle.y}, 0).image,
+                            execution())
+                  .psnr_db,
+              27);
     EXPECT_THAT(builder({photograph("oblique0", places[0]), photograph("oblique1", places[1])})
                     .edges_to_match(),
                 IsEmpty());
@@ -362,7 +332,7 @@ TEST_F(SceneBuilderTest, TellsWhetherRowsAndColumnsCorrespond) {
   LayeredSceneOptions options = small_scene();
   options.width_px = 320;
   options.height_px = 240;
-  const LayeredScene scene(options, threads());
+  const LayeredScene scene(options, execution());
   std::map<std::pair<double, double>, Photograph> rendered;
   const auto seen_from = [&](ScenePosition at) -> const Photograph& {
     Photograph& image = rendered[{at.x, at.y}];
@@ -383,7 +353,7 @@ TEST_F(SceneBuilderTest, TellsWhetherRowsAndColumnsCorrespond) {
     build.match.preset = MatchPreset::kFast;  // maps are not looked at
     build.match.disparities = {-20, 20};
     fs::remove_all(place_);
-    SceneBuilder checking(place_, images, build, threads());
+    SceneBuilder checking(place_, images, build, execution());
     const auto error = checking.build(0).rectification;
     EXPECT_EQ(read_scene(place_).edges.at(0).rectification_error_px.has_value(), error.has_value());
     return error.value_or(VerticalError{.systematic_px = -1});
@@ -435,7 +405,7 @@ TEST_F(SceneBuilderTest, SaysWhatIsWrong) {
   }
   fs::remove_all(place_);
 
-  write_photograph(images[1].file, test::noise<std::uint8_t>(20, 10, 3));
+  write_photograph(images[1].file, noise<std::uint8_t>(20, 10, 3));
   EXPECT_THAT(error_of([&] { builder(images); }),
               AllOf(HasSubstr("row1.png is 20×10, 3 channels, 8-bit"),
                     HasSubstr("expected 107×73, 3 channels, 8-bit as"), HasSubstr("row0.png")));
@@ -447,5 +417,4 @@ TEST_F(SceneBuilderTest, SaysWhatIsWrong) {
   EXPECT_THAT(error_of([&] { options.validate(); }), HasSubstr("disparities-y is set"));
 }
 
-}  // namespace scene_builder_test
-}  // namespace vantage
+}  // namespace vantage::scene_builder_test

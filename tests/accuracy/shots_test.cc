@@ -1,29 +1,11 @@
 #include "engine/sequence/shots.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <atomic>
-#include <cmath>
-#include <filesystem>
-#include <iterator>
-#include <optional>
-#include <set>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/synthesis/view_synthesizer.h"
-#include "tests/engine/io_test_support.h"
-#include "tests/temporary_folder.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace shots_test {
-
-using testing::HasSubstr;
+namespace vantage::shots_test {
 
 constexpr int kCut = 7;
 constexpr int kFrames = 16;
@@ -58,7 +40,6 @@ class TwoShots : public PairSource {
     if (bad.contains(index)) {
       throw Error("damaged");
     }
-    Execution execution({.threads = 1});
     LayeredSceneOptions options;
     options.width_px = 96;
     options.height_px = 64;
@@ -68,7 +49,7 @@ class TwoShots : public PairSource {
     options.seed = index < kCut ? 1 : 5;
     options.right_gain = index < kCut ? 0.8 : 1.1;
     options.right_offset = index < kCut ? 15 : -10;
-    const LayeredScene scene(options, execution);
+    const LayeredScene scene(options, execution());
     const int time = index < kCut ? index : index + 40;
     pair.left = scene.render({0, 0}, time).image;
     pair.right = pair.wants_right ? scene.render({1, 0}, time).image : Photograph();
@@ -102,9 +83,8 @@ class Shots : public ::testing::Test {
 
   /// What such samples give, from all their disparities in order.
   Shot shot_of_samples(const std::vector<int>& frames) {
-    Execution execution({.threads = 1});
-    const StereoMatcher matcher(options_.match, execution);
-    const ViewSynthesizer synthesizer(options_.synthesis, execution);
+    const StereoMatcher matcher(options_.match, execution());
+    const ViewSynthesizer synthesizer(options_.synthesis, execution());
     kernels::IntensitySums sums;
     std::vector<float> disparities;
     for (const int frame : frames) {
@@ -224,10 +204,8 @@ TEST_F(Shots, PreparePairsBeforeMatching) {
   hooks_.prepare = [&](FramePair& pair) {
     ++prepared;
     auto& right = std::get<Image<std::uint8_t>>(pair.right.pixels);
-    for (int y = 0; y < right.height(); ++y) {
-      for (int k = 0; k < right.width() * right.channels(); ++k) {
-        right.row(y)[k] = static_cast<std::uint8_t>(right.row(y)[k] / 2);
-      }
+    for (const auto [k, y] : positions_of(right.width() * right.channels(), right.height())) {
+      right.row(y)[k] = static_cast<std::uint8_t>(right.row(y)[k] / 2);
     }
   };
   const auto table = survey();
@@ -268,12 +246,12 @@ TEST(ShotTableFile, IsThatOfTheFirstWhoKeepsOne) {
   EXPECT_EQ(keep_shot_table(file, second), first);
   EXPECT_EQ(read_shot_table(file), first);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
-  test::put_text(file, to_json(first));
+  put_text(file, to_json(first));
   EXPECT_THAT(test::error_of([&] { read_shot_table(file); }), HasSubstr("wrong checksum"));
-  test::put_text(file, to_json(first).substr(0, 40));
+  put_text(file, to_json(first).substr(0, 40));
   EXPECT_THAT(test::error_of([&] { read_shot_table(file); }),
               HasSubstr(file.string() + ": is damaged (shots:"));
-  test::put_text(file, "");
+  put_text(file, "");
   EXPECT_THAT(test::error_of([&] { read_shot_table(file); }), HasSubstr(file.string()));
   EXPECT_THAT(test::error_of([&] { keep_shot_table(folder / "none/shots.json", first); }),
               HasSubstr("there is no folder"));
@@ -311,5 +289,4 @@ TEST(ShotTableJson, MalformedTextIsRefused) {
   EXPECT_THAT(with([](ShotTable& t) { t.shots[1].intensity[2].gain = 0; }), HasSubstr("gain"));
 }
 
-}  // namespace shots_test
-}  // namespace vantage
+}  // namespace vantage::shots_test

@@ -1,33 +1,17 @@
 #include "engine/synthesis/pair_warpers.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "engine/error.h"
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
-#include "engine/simd.h"
 #include "engine/synthesis/surface_map.h"
-#include "engine/synthesis/view_synthesizer.h"
+#include "tests/engine/engine_test.h"
+#include "tests/engine/every_execution.h"
+#include "tests/engine/synthesis_pair.h"
 #include "tests/kernels/projection_cases.h"
 
-namespace vantage {
-namespace surface_warper_test {
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+namespace vantage::surface_warper_test {
 
 /// A pair of ideal cameras, principal point in the middle of their images.
 RectifiedPair ideal_pair(int width, int height, double focal_length_px) {
@@ -59,59 +43,21 @@ PosedCamera turned_camera(const RectifiedPair& pair, const Eigen::Vector3d& cent
   return camera;
 }
 
-struct Pair {
-  Photograph left;
-  Photograph right;
-  DisparityMap left_disparity;
-  DisparityMap right_disparity;
+using Pair = SynthesisPair;
 
-  template <typename Position>
-  void synthesize(const SynthesisOptions& options, const Position& position, Execution& execution,
-                  SynthesizedView& view,
-                  const std::array<IntensityFit, 4>* given_fit = nullptr) const {
-    ViewSynthesizer(options, execution)
-        .synthesize({left, right, left_disparity.view(), right_disparity.view()}, position, view,
-                    given_fit);
+DisparityMap random_map(std::mt19937& random, int width, int height) {
+  DisparityMap map(width, height);
+  const std::vector<float> values = kernels::random_map(random, width, height);
+  for (int y = 0; y < height; ++y) {
+    std::copy_n(values.begin() + y * width, width, map.row(y));
   }
-};
+  return map;
+}
 
 template <typename T>
 Pair random_pair(std::mt19937& random, int width, int height, int channels) {
-  const auto picture = [&] {
-    Image<T> image(width, height, channels);
-    for (int y = 0; y < height; ++y) {
-      for (int k = 0; k < width * channels; ++k) {
-        const auto grey = 8.0 * (y % 16) + static_cast<double>(random() % 100);
-        image.row(y)[k] = static_cast<T>(grey / static_cast<double>(kGreyLevelsPerUnit<T>));
-      }
-    }
-    return Photograph{std::move(image)};
-  };
-  const auto map = [&] {
-    DisparityMap result(width, height);
-    const std::vector<float> values = kernels::random_map(random, width, height);
-    for (int y = 0; y < height; ++y) {
-      std::copy_n(values.begin() + y * width, width, result.row(y));
-    }
-    return result;
-  };
-  return {picture(), picture(), map(), map()};
-}
-
-std::vector<std::uint8_t> bytes_of(const SynthesizedView& view) {
-  std::vector<std::uint8_t> bytes;
-  const auto append = [&]<typename T>(const Image<T>& image) {
-    for (int y = 0; y < image.height(); ++y) {
-      const auto* row = reinterpret_cast<const std::uint8_t*>(image.row(y));
-      bytes.insert(bytes.end(), row,
-                   row + sizeof(T) * static_cast<std::size_t>(image.width() * image.channels()));
-    }
-  };
-  std::visit(append, view.image.pixels);
-  append(view.holes);
-  const auto* fit = reinterpret_cast<const std::uint8_t*>(view.intensity.data());
-  bytes.insert(bytes.end(), fit, fit + sizeof(view.intensity));
-  return bytes;
+  return random_synthesis_pair<T>(random, width, height, channels, 1,
+                                  [&] { return random_map(random, width, height); });
 }
 
 std::vector<NewView> views_of(int width, int height) {
@@ -128,11 +74,7 @@ TEST(SurfaceMap, MissesNothing) {
   Execution execution({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
   for (kernels::ViewProjection view : kernels::projection_cases()) {
     for (const auto& [width, height] : {std::pair{1, 1}, {150, 97}, {64, 16}, {65, 17}, {3, 200}}) {
-      DisparityMap map(width, height);
-      const std::vector<float> values = kernels::random_map(random, width, height);
-      for (int y = 0; y < height; ++y) {
-        std::copy_n(values.begin() + y * width, width, map.row(y));
-      }
+      DisparityMap map = random_map(random, width, height);
       for (int n = 0; n < 20; ++n) {
         map.at(static_cast<int>(random() % static_cast<unsigned>(width)),
                static_cast<int>(random() % static_cast<unsigned>(height))) =
@@ -189,14 +131,13 @@ TEST(SurfaceMap, MissesNothing) {
 
 TEST(SurfaceWarper, BaselineViewsAreThoseAlongScanlines) {
   std::mt19937 random(2);
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   const Pair pair = random_pair<std::uint8_t>(random, 61, 23, 3);
   for (const double view_x : {-0.6, 0.0, 0.37, 1.0, 1.8}) {
     for (const WarpColour warp : {WarpColour::kOnePass, WarpColour::kForward}) {
       SynthesizedView expected;
       SynthesizedView view;
-      pair.synthesize({.warp = warp}, view_x, execution, expected);
-      pair.synthesize({.warp = warp}, baseline_view(view_x, 0, 61, 23), execution, view);
+      pair.synthesize({.warp = warp}, view_x, execution(), expected);
+      pair.synthesize({.warp = warp}, baseline_view(view_x, 0, 61, 23), execution(), view);
       EXPECT_EQ(bytes_of(view), bytes_of(expected));
     }
   }
@@ -205,16 +146,15 @@ TEST(SurfaceWarper, BaselineViewsAreThoseAlongScanlines) {
 // What a view on the baseline is if it goes the general way: the same, to the last bit.
 TEST(SurfaceWarper, OnTheBaselineItEqualsTheScanlineWarp) {
   std::mt19937 random(3);
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   // Without what looks at a view once it is warped and blended.
   const SynthesisOptions warp_alone{.holes = HoleFilling::kNone, .soft_edges = false};
   for (const int channels : {1, 3, 4}) {
     const Pair pair = random_pair<std::uint8_t>(random, 131, 37, channels);
     SynthesizedView expected;
     SynthesizedView view;
-    pair.synthesize(warp_alone, 0.43, execution, expected);
+    pair.synthesize(warp_alone, 0.43, execution(), expected);
     // One line more than the images have: not a view that goes along scanlines.
-    pair.synthesize(warp_alone, baseline_view(0.43, 0, 131, 38), execution, view);
+    pair.synthesize(warp_alone, baseline_view(0.43, 0, 131, 38), execution(), view);
     const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
     const auto& scanlines = std::get<Image<std::uint8_t>>(expected.image.pixels);
     ASSERT_EQ(image.height(), 38);
@@ -232,25 +172,13 @@ TEST(SurfaceWarper, OnTheBaselineItEqualsTheScanlineWarp) {
 TEST(SurfaceWarper, IdenticalForAnyExecutionAndInstructionSet) {
   std::mt19937 random(4);
   const Pair pair = random_pair<std::uint8_t>(random, 151, 140, 3);
-  Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   for (const NewView& new_view : views_of(151, 140)) {
-    SynthesizedView view;
-    pair.synthesize({}, new_view, serial, view);
-    EXPECT_LT(view.hole_fraction, 0.9);
-    const std::vector<std::uint8_t> expected = bytes_of(view);
-    for (const auto kind : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
-      for (const int threads : {1, 2, 7}) {
-        Execution execution({.threads = threads, .executor = kind});
-        pair.synthesize({}, new_view, execution, view);
-        ASSERT_EQ(bytes_of(view), expected) << threads << " threads";
-      }
-    }
-    for (const std::string& name : available_instruction_sets()) {
-      force_instruction_set(name);
-      pair.synthesize({}, new_view, serial, view);
-      ASSERT_EQ(bytes_of(view), expected) << name;
-    }
-    force_instruction_set("best");
+    expect_equal_for_every_execution([&](Execution& execution) {
+      SynthesizedView view;
+      pair.synthesize({}, new_view, execution, view);
+      EXPECT_LT(view.hole_fraction, 0.9);
+      return bytes_of(view);
+    });
   }
 }
 
@@ -266,14 +194,12 @@ TEST(SurfaceWarper, APlaneMovesByItsHomography) {
   };
   const auto picture = [&](bool is_right, DisparityMap& map) {
     Image<float> image(width, height, 1);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        // d = slope_x · x + slope_y · y + offset of the left image's x, which is x + d in the
-        // right.
-        const double left_x = is_right ? (x + slope_y * y + offset) / (1 - slope_x) : x;
-        map.at(x, y) = static_cast<float>(slope_x * left_x + slope_y * y + offset);
-        image.at(x, y) = static_cast<float>(texture(left_x, y) / 255);
-      }
+    for (const auto [x, y] : positions_of(width, height)) {
+      // d = slope_x · x + slope_y · y + offset of the left image's x, which is x + d in the
+      // right.
+      const double left_x = is_right ? (x + slope_y * y + offset) / (1 - slope_x) : x;
+      map.at(x, y) = static_cast<float>(slope_x * left_x + slope_y * y + offset);
+      image.at(x, y) = static_cast<float>(texture(left_x, y) / 255);
     }
     return Photograph{std::move(image)};
   };
@@ -283,7 +209,6 @@ TEST(SurfaceWarper, APlaneMovesByItsHomography) {
   Photograph right = picture(true, right_map);
   const Pair pair{std::move(left), std::move(right), std::move(left_map), std::move(right_map)};
   const RectifiedPair cameras = ideal_pair(width, height, 300);
-  Execution execution({.threads = 2});
   const Eigen::RowVector3d plane(slope_x, slope_y, offset);
   for (const NewView& new_view :
        {baseline_view(0.4, 0.7, width, height),
@@ -291,25 +216,23 @@ TEST(SurfaceWarper, APlaneMovesByItsHomography) {
         camera_view(cameras, turned_camera(cameras, {-0.3, 0.2, 1.5}, -1.9, 0.05, -0.04, 1.3)),
         camera_view(cameras, turned_camera(cameras, {0.7, -0.2, -1}, 0, -0.1, 0.1, 2.7))}) {
     SynthesizedView view;
-    pair.synthesize({}, new_view, execution, view);
+    pair.synthesize({}, new_view, execution(), view);
     const auto& image = std::get<Image<float>>(view.image.pixels);
     const Eigen::Matrix3d back =
         (new_view.from_left.homography + new_view.from_left.parallax * plane).inverse();
     double squares = 0;
     int count = 0;
-    for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) {
-        const Eigen::Vector3d seen = back * Eigen::Vector3d(u, v, 1);
-        const double x = seen.x() / seen.z();
-        const double y = seen.y() / seen.z();
-        if (seen.z() <= 0 || x < 3 || y < 3 || x > width - 4 || y > height - 4) {
-          continue;
-        }
-        ASSERT_EQ(view.holes.at(u, v), 0) << u << ", " << v;
-        const double error = 255.0 * static_cast<double>(image.at(u, v)) - texture(x, y);
-        squares += error * error;
-        ++count;
+    for (const auto [u, v] : positions_of(width, height)) {
+      const Eigen::Vector3d seen = back * Eigen::Vector3d(u, v, 1);
+      const double x = seen.x() / seen.z();
+      const double y = seen.y() / seen.z();
+      if (seen.z() <= 0 || x < 3 || y < 3 || x > width - 4 || y > height - 4) {
+        continue;
       }
+      ASSERT_EQ(view.holes.at(u, v), 0) << u << ", " << v;
+      const double error = 255.0 * static_cast<double>(image.at(u, v)) - texture(x, y);
+      squares += error * error;
+      ++count;
     }
     EXPECT_GT(count, 8000);
     EXPECT_GT(10 * std::log10(255.0 * 255.0 * count / squares), 50) << "of " << count;
@@ -346,11 +269,9 @@ class ExactScene {
     const Mask not_left = scene_.occlusion(camera, scene_.camera({0, 0}), 0);
     const Mask not_right = scene_.occlusion(camera, scene_.camera({1, 0}), 0);
     Mask visible(new_view.width_px, new_view.height_px);
-    for (int y = 0; y < new_view.height_px; ++y) {
-      for (int x = 0; x < new_view.width_px; ++x) {
-        const bool seen = not_left.at(x, y) == 0 || not_right.at(x, y) == 0;
-        visible.at(x, y) = seen && std::isfinite(truth.disparity.at(x, y)) ? 255 : 0;
-      }
+    for (const auto [x, y] : positions_of(new_view.width_px, new_view.height_px)) {
+      const bool seen = not_left.at(x, y) == 0 || not_right.at(x, y) == 0;
+      visible.at(x, y) = seen && std::isfinite(truth.disparity.at(x, y)) ? 255 : 0;
     }
     SynthesizedView view;
     pair_.synthesize({}, new_view, execution_, view);
@@ -414,14 +335,13 @@ TEST(SurfaceWarper, BesideACameraOutlinesAreThePhotographs) {
 TEST(SurfaceWarper, SumsGiveTheFitOfTheView) {
   std::mt19937 random(5);
   const Pair pair = random_pair<std::uint16_t>(random, 90, 70, 3);
-  Execution execution({.threads = 2});
-  const ViewSynthesizer synthesizer({}, execution);
+  const ViewSynthesizer synthesizer({}, execution());
   for (const NewView& new_view : views_of(90, 70)) {
     const auto sums = synthesizer.intensity_sums(
         {pair.left, pair.right, pair.left_disparity.view(), pair.right_disparity.view()}, new_view);
     EXPECT_GT(sums.pixels, 100);
     SynthesizedView view;
-    pair.synthesize({}, new_view, execution, view);
+    pair.synthesize({}, new_view, execution(), view);
     const std::array<IntensityFit, 4> fit = fit_channels(sums, 3, 1);
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(view.intensity[c].offset, fit[c].offset, 1e-6);
@@ -429,7 +349,7 @@ TEST(SurfaceWarper, SumsGiveTheFitOfTheView) {
     }
     // A given fit warps once; the picture is the same.
     SynthesizedView given;
-    pair.synthesize({}, new_view, execution, given, &view.intensity);
+    pair.synthesize({}, new_view, execution(), given, &view.intensity);
     EXPECT_EQ(bytes_of(given), bytes_of(view));
   }
 }
@@ -461,10 +381,9 @@ TEST(SurfaceWarper, NothingIsKnown) {
   Pair pair = random_pair<std::uint8_t>(random, 20, 10, 1);
   pair.left_disparity.fill(kUnknown);
   pair.right_disparity.fill(-std::numeric_limits<float>::infinity());
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   for (const NewView& new_view : views_of(20, 10)) {
     SynthesizedView view;
-    pair.synthesize({}, new_view, execution, view);
+    pair.synthesize({}, new_view, execution(), view);
     EXPECT_EQ(view.hole_fraction, 1);
   }
 }
@@ -477,11 +396,10 @@ TEST(SurfaceWarper, WildDisparitiesDoNoHarm) {
       map->at(static_cast<int>(random() % 40), static_cast<int>(random() % 30)) = wild;
     }
   }
-  Execution execution({.threads = 2});
   for (const NewView& new_view : views_of(40, 30)) {
     SynthesizedView view;
     for (const double limit : {0.0, 1.0, 1e6}) {
-      pair.synthesize({.disparity_gradient_limit_px = limit}, new_view, execution, view);
+      pair.synthesize({.disparity_gradient_limit_px = limit}, new_view, execution(), view);
       EXPECT_LT(view.hole_fraction, 1);
     }
   }
@@ -489,50 +407,43 @@ TEST(SurfaceWarper, WildDisparitiesDoNoHarm) {
 
 // Every colour of a forward warp is one that its image has.
 TEST(SurfaceWarper, ForwardMovesWholePixels) {
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   Image<std::uint8_t> numbered(16, 15, 1);
   Image<std::uint8_t> right(16, 15, 1);
   Image<float> disparity(16, 15);
   disparity.fill(4);
-  for (int y = 0; y < 15; ++y) {
-    for (int x = 0; x < 16; ++x) {
-      numbered.at(x, y) = static_cast<std::uint8_t>(y * 16 + x);
-      right.at(x, y) = static_cast<std::uint8_t>(y * 16 + (x + 4) % 16);
-    }
+  for (const auto [x, y] : positions_of(16, 15)) {
+    numbered.at(x, y) = static_cast<std::uint8_t>(y * 16 + x);
+    right.at(x, y) = static_cast<std::uint8_t>(y * 16 + (x + 4) % 16);
   }
   SynthesizedView view;
   ViewSynthesizer({.warp = WarpColour::kForward,
                    .holes = HoleFilling::kNone,
                    .match_intensities = false,
                    .soft_edges = false},
-                  execution)
+                  execution())
       .synthesize({{numbered.copy()}, {right.copy()}, disparity.view(), disparity.view()},
                   baseline_view(0, 0.4, 16, 15), view);
   // 4 · 0.4 = 1.6 rows up, so the pixel two rows below lands here.
   const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
-  for (int y = 0; y < 13; ++y) {
-    for (int x = 0; x < 16; ++x) {
-      EXPECT_EQ(image.at(x, y), (y + 2) * 16 + x);
-    }
+  for (const auto [x, y] : positions_of(16, 13)) {
+    EXPECT_EQ(image.at(x, y), (y + 2) * 16 + x);
   }
 }
 
 TEST(SurfaceWarper, RefusesWhatItCannotMake) {
   std::mt19937 random(9);
   const Pair pair = random_pair<std::uint8_t>(random, 20, 10, 3);
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   SynthesizedView view;
   for (const auto& [width, height] : {std::pair{0, 10}, {20, 0}, {65501, 10}, {20, 65501}}) {
-    EXPECT_THROW(pair.synthesize({}, baseline_view(0.5, 0.1, width, height), execution, view),
+    EXPECT_THROW(pair.synthesize({}, baseline_view(0.5, 0.1, width, height), execution(), view),
                  Error);
   }
   NewView flat = baseline_view(0.5, 0.1, 20, 10);
   flat.from_right.homography.setOnes();
-  EXPECT_THROW(pair.synthesize({}, flat, execution, view), Error);
+  EXPECT_THROW(pair.synthesize({}, flat, execution(), view), Error);
   flat.from_right.homography = Eigen::Matrix3d::Identity() * 2;
   flat.from_right.homography(0, 1) = std::nan("");
-  EXPECT_THROW(pair.synthesize({}, flat, execution, view), Error);
+  EXPECT_THROW(pair.synthesize({}, flat, execution(), view), Error);
 }
 
-}  // namespace surface_warper_test
-}  // namespace vantage
+}  // namespace vantage::surface_warper_test

@@ -1,19 +1,13 @@
 #include "engine/synthesis/three_step_synthesizer.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 
-#include "engine/error.h"
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/view_geometry/new_view.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace three_step_synthesizer_test {
-
-using test::error_of;
+namespace vantage::three_step_synthesizer_test {
 
 class ThreeStepSynthesizerTest : public testing::Test {
  protected:
@@ -59,10 +53,8 @@ class ThreeStepSynthesizerTest : public testing::Test {
 
 Mask inverted(const Mask& mask) {
   Mask result = mask.copy();
-  for (int y = 0; y < mask.height(); ++y) {
-    for (int x = 0; x < mask.width(); ++x) {
-      result.at(x, y) = static_cast<std::uint8_t>(255 - mask.at(x, y));
-    }
+  for (const auto [x, y] : positions_of(mask)) {
+    result.at(x, y) = static_cast<std::uint8_t>(255 - mask.at(x, y));
   }
   return result;
 }
@@ -123,5 +115,4 @@ TEST_F(ThreeStepSynthesizerTest, ACameraAheadHasAPlaneThatCutsTheScene) {
   EXPECT_NO_THROW(one_pass(ahead));
 }
 
-}  // namespace three_step_synthesizer_test
-}  // namespace vantage
+}  // namespace vantage::three_step_synthesizer_test

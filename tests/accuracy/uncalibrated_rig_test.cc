@@ -1,31 +1,16 @@
 #include "engine/rectification/uncalibrated_rig.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <map>
 #include <opencv2/calib3d.hpp>
-#include <sstream>
-#include <thread>
 
 #include "engine/rectification/improved_rectification.h"
 #include "engine/rectification/rectifier.h"
-#include "tests/engine/io_test_support.h"
+
+#include "tests/engine/engine_test.h"
 #include "tests/engine/match_cases.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace uncalibrated_rig_test {
-
-using test::error_of;
-using test::exact_matches;
-using test::random_calibration;
-using test::spoil;
-using testing::HasSubstr;
+namespace vantage::uncalibrated_rig_test {
 
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
@@ -329,5 +314,4 @@ TEST(RigValidation, TellsOfFewInexactMatchesAndOfPartsWithoutAny) {
   EXPECT_FALSE(validation_of(matches).held_out);
 }
 
-}  // namespace uncalibrated_rig_test
-}  // namespace vantage
+}  // namespace vantage::uncalibrated_rig_test

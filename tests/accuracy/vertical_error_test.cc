@@ -1,29 +1,14 @@
 #include "engine/rectification/vertical_error.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
-#include <random>
-
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/uncalibrated_rig.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/unrectified_pair.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace vertical_error_test {
-
-using test::uniform;
-
-Execution& execution() {
-  static Execution two_threads({.threads = 2});
-  return two_threads;
-}
+namespace vantage::vertical_error_test {
 
 struct SceneImages {
   Photograph left;
@@ -118,10 +103,10 @@ TEST(VerticalError, LeavesWrongMatchesOutAndTellsNoiseFromError) {
 TEST(VerticalError, IsFoundWhereItChangesOverTheImage) {
   const auto& [left, right] = scene_images();
   constexpr double kTurn = 0.006;
-  const Eigen::Matrix3d turn = test::turned_by(0, 0, kTurn);
+  const Eigen::Matrix3d turn = turned_by(0, 0, kTurn);
   const Eigen::Matrix3d to_middle{{1, 0, -159.5}, {0, 1, -119.5}, {0, 0, 1}};
   const auto found =
-      check_rectification(left, test::warped(right, to_middle.inverse() * turn * to_middle));
+      check_rectification(left, warped(right, to_middle.inverse() * turn * to_middle));
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->mean_px, 0, 0.1);
   // Of points that are evenly spread over the width.
@@ -139,7 +124,7 @@ TEST(VerticalError, PairsThatClearlyAgreeTakeAQuickLook) {
   EXPECT_LT(found->matches, sure(right)->matches / 2);
   Eigen::Matrix3d down = Eigen::Matrix3d::Identity();
   down(1, 2) = 0.4;
-  const Photograph shifted = test::warped(right, down);
+  const Photograph shifted = warped(right, down);
   const auto unsure = check_rectification(left, shifted);
   ASSERT_TRUE(unsure && sure(shifted));
   EXPECT_EQ(unsure->matches, sure(shifted)->matches);
@@ -190,7 +175,7 @@ TEST(VerticalError, IsFoundInPictures) {
   for (const double shift : {0.4, -1.3}) {
     Eigen::Matrix3d down = Eigen::Matrix3d::Identity();
     down(1, 2) = shift;
-    const Photograph shifted = test::warped(right, down);
+    const Photograph shifted = warped(right, down);
     {
       const std::optional<VerticalError> found =
           shift > 0 ? check_rectification(left, shifted)
@@ -206,7 +191,7 @@ TEST(VerticalError, IsFoundInPictures) {
 }
 
 TEST(VerticalError, IsGoneOnceEstimatedCamerasHaveRectified) {
-  const test::UnrectifiedPair pair = test::unrectified_pair(execution());
+  const RenderedPair pair = unrectified_pair(execution());
   const auto before = check_rectification(pair.left, pair.right);
   ASSERT_TRUE(before);
   EXPECT_GT(before->systematic_px, 5);
@@ -255,5 +240,4 @@ TEST(VerticalError, OfTheMotorcycleIsThatOfItsTruth) {
   EXPECT_LT(other->systematic_px, 0.15);
 }
 
-}  // namespace vertical_error_test
-}  // namespace vantage
+}  // namespace vantage::vertical_error_test

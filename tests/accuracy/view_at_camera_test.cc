@@ -1,14 +1,8 @@
 // Views from the place of a camera of the pair are its photograph, moved by a homography: known
 // without any disparity, by resampling the photograph with OpenCV.
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <array>
-#include <limits>
-#include <numbers>
 #include <opencv2/imgproc.hpp>
-#include <string>
-#include <utility>
 
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
@@ -16,11 +10,10 @@
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/pose_renderer.h"
 #include "engine/synthesis/three_step_synthesizer.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/unrectified_pair.h"
 
-namespace vantage {
-namespace view_at_camera_test {
+namespace vantage::view_at_camera_test {
 
 constexpr int kWidth = 240;
 constexpr int kHeight = 180;
@@ -87,15 +80,13 @@ Photograph resampled(const Photograph& photograph, const Eigen::Matrix3d& homogr
 Mask inside(const Eigen::Matrix3d& homography) {
   const Eigen::Matrix3d back = homography.inverse();
   Mask mask(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const Eigen::Vector3d at = back * Eigen::Vector3d(x, y, 1);
-      const Eigen::Vector2d place = at.hnormalized();
-      mask.at(x, y) = at.z() > 0 && place.x() >= 2 && place.y() >= 2 && place.x() <= kWidth - 3 &&
-                              place.y() <= kHeight - 3
-                          ? 255
-                          : 0;
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    const Eigen::Vector3d at = back * Eigen::Vector3d(x, y, 1);
+    const Eigen::Vector2d place = at.hnormalized();
+    mask.at(x, y) = at.z() > 0 && place.x() >= 2 && place.y() >= 2 && place.x() <= kWidth - 3 &&
+                            place.y() <= kHeight - 3
+                        ? 255
+                        : 0;
   }
   return mask;
 }
@@ -166,26 +157,24 @@ TEST_F(ViewAtCamera, IsThatPhotographWhateverTheOtherShows) {
   const SceneRendering right = darker.render(SceneView{1, 0}, 0);
   DisparityMap left_map = left.disparity.copy();
   DisparityMap right_map = right.disparity.copy();
-  for (int y = 30; y < 90; ++y) {
-    for (int x = 50; x < 120; ++x) {
-      left_map.at(x, y) = std::numeric_limits<float>::quiet_NaN();
-      right_map.at(x, y) = std::numeric_limits<float>::infinity();
-    }
+  for (const auto [x, y] : positions_of({50, 120}, {30, 90})) {
+    left_map.at(x, y) = std::numeric_limits<float>::quiet_NaN();
+    right_map.at(x, y) = std::numeric_limits<float>::infinity();
   }
   const PoseRenderer renderer({}, nullptr, execution_);
   const ViewSource source{left.image, right.image, left_map.view(), right_map.view(), {}};
   SynthesizedView view;
   renderer.render(source, BaselinePosition{0, 0}, view, nullptr);
-  EXPECT_TRUE(test::same(view.image, left.image));
+  EXPECT_TRUE(same(view.image, left.image));
   EXPECT_EQ(view.hole_fraction, 0);
   renderer.render(source, BaselinePosition{1, 0}, view, nullptr);
-  EXPECT_TRUE(test::same(view.image, right.image));
+  EXPECT_TRUE(same(view.image, right.image));
   EXPECT_EQ(view.hole_fraction, 0);
 }
 
 // The camera that took a photograph which is not rectified sees that photograph, to the last bit.
 TEST_F(ViewAtCamera, OfAnOriginalIsTheOriginal) {
-  const test::UnrectifiedPair raw = test::unrectified_pair(execution_, kWidth, kHeight);
+  const RenderedPair raw = unrectified_pair(execution_, kWidth, kHeight);
   const Rectifier rectifier(raw.calibration, kWidth, kHeight);
   const RectifiedPair& cameras = rectifier.pair();
   const PhotographGrid grid(rectifier, execution_);
@@ -193,10 +182,8 @@ TEST_F(ViewAtCamera, OfAnOriginalIsTheOriginal) {
   DisparityMaps maps;
   for (DisparityMap* map : {&maps.left.disparity_px, &maps.right.disparity_px}) {
     map->resize(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        map->at(x, y) = (x / 16 + y / 12) % 3 == 0 ? 14.0F : 4.0F + 0.01F * static_cast<float>(x);
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      map->at(x, y) = (x / 16 + y / 12) % 3 == 0 ? 14.0F : 4.0F + 0.01F * static_cast<float>(x);
     }
   }
   std::array<Image<float>, 2> photograph_maps;
@@ -226,5 +213,4 @@ TEST_F(ViewAtCamera, OfAnOriginalIsTheOriginal) {
   }
 }
 
-}  // namespace view_at_camera_test
-}  // namespace vantage
+}  // namespace vantage::view_at_camera_test

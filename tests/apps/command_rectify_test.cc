@@ -15,8 +15,8 @@ class RectifyTest : public testing::Test {
     write_photograph(right_, pair_.right);
   }
 
-  static const test::UnrectifiedPair& shared_pair() {
-    static const test::UnrectifiedPair pair = [] {
+  static const test::RenderedPair& shared_pair() {
+    static const test::RenderedPair pair = [] {
       Execution execution({.threads = 2});
       return test::unrectified_pair(execution);
     }();
@@ -28,7 +28,7 @@ class RectifyTest : public testing::Test {
 
   Execution execution_{{.threads = 2}};
   TemporaryFolder folder_;
-  const test::UnrectifiedPair& pair_ = shared_pair();
+  const test::RenderedPair& pair_ = shared_pair();
   std::string left_ = folder_ / "raw-left.png";
   std::string right_ = folder_ / "raw-right.png";
 };

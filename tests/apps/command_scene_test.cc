@@ -256,7 +256,7 @@ TEST_F(SceneCommand, WarnsOfEdgesThatDoNotCorrespond) {
 }
 
 TEST_F(SceneCommand, RefusesHandHeldCamerasUnlessForced) {
-  const test::UnrectifiedPair pair = test::unrectified_pair(execution_);
+  const test::RenderedPair pair = test::unrectified_pair(execution_);
   write_photograph(folder_ / "a.png", pair.left);
   write_photograph(folder_ / "b.png", pair.right);
   write_file(folder_ / "list.csv", "a.png,0,0\nb.png,1,0\n");

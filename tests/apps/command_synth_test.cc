@@ -4,7 +4,7 @@
 #include "engine/image/stereo_packing.h"
 #include "engine/io/video/video_io.h"
 #include "tests/apps/sampling.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
 namespace vantage::command_synth_test {
 

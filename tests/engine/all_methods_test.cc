@@ -1,26 +1,14 @@
 // Every cost under every aggregation against the plain transcription of the equations.
-#include <gtest/gtest.h>
 
-#include <cstdint>
-#include <iterator>
-#include <string>
-#include <vector>
-
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/table_keys.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace all_methods_test {
+namespace vantage::all_methods_test {
 
-using test::expect_equals_oracle;
-using test::name_of;
-using test::PixelKind;
-using test::textured_pair;
-using test::tolerance_of;
-
-const std::vector<MatchCost> kCosts = test::all_costs();
-const std::vector<Aggregation> kAggregations = test::all_aggregations();
+const std::vector<MatchCost> kCosts = all_costs();
+const std::vector<Aggregation> kAggregations = all_aggregations();
 
 /// Images that a method is looked at with.
 struct ImageCase {
@@ -57,35 +45,33 @@ MatchOptions options_of(MatchCost cost, Aggregation aggregation, const ImageCase
 }
 
 /// Every cost meets every aggregation and all images, and so does every aggregation.
-const std::vector<test::SampleRow>& method_rows() {
-  static const auto rows = test::sampled_rows({static_cast<int>(std::size(kCosts)),
-                                               static_cast<int>(std::size(kAggregations)),
-                                               static_cast<int>(std::size(kImages))});
+const std::vector<SampleRow>& method_rows() {
+  static const auto rows =
+      sampled_rows({static_cast<int>(std::size(kCosts)), static_cast<int>(std::size(kAggregations)),
+                    static_cast<int>(std::size(kImages))});
   return rows;
 }
 
 class AllMethods : public ::testing::TestWithParam<int> {};
 
 TEST_P(AllMethods, EqualTheOracle) {
-  Execution execution({.threads = 2});
-  for (const test::SampleRow& row : test::rows_of(method_rows(), GetParam())) {
+  for (const SampleRow& row : rows_of(method_rows(), GetParam())) {
     const Aggregation aggregation = kAggregations[static_cast<std::size_t>(row[1])];
     const ImageCase& images = kImages[row[2]];
-    SCOPED_TRACE("images " + std::to_string(row[2]) + ", " + test::sample_name());
+    SCOPED_TRACE("images " + std::to_string(row[2]) + ", " + sample_name());
     const auto pair =
         textured_pair(images.width, images.height, images.range, images.kind, images.seed);
     const MatchOptions options =
         options_of(kCosts[static_cast<std::size_t>(row[0])], aggregation, images);
-    expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()),
-                         name_of(aggregation));
+    expect_equals_oracle(pair, options, execution(), tolerance_of(options.resolved()),
+                         case_name(aggregation));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Costs, AllMethods,
                          ::testing::Range(0, static_cast<int>(std::size(kCosts))),
                          [](const auto& instance) {
-                           return name_of(kCosts[static_cast<std::size_t>(instance.param)]);
+                           return case_name(kCosts[static_cast<std::size_t>(instance.param)]);
                          });
 
-}  // namespace all_methods_test
-}  // namespace vantage
+}  // namespace vantage::all_methods_test

@@ -1,20 +1,11 @@
 #include "engine/io/files/atomic_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <string>
-#include <vector>
-
 #include "engine/io/files/temporary_name.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace atomic_file_test {
+namespace vantage::atomic_file_test {
 
 namespace fs = std::filesystem;
-using testing::UnorderedElementsAre;
 
 std::vector<std::string> names_in(const fs::path& folder) {
   std::vector<std::string> names;
@@ -31,14 +22,14 @@ TEST(AtomicFileLink, IsFollowedWhereverItLeads) {
   fs::create_symlink(folder / "there/file", folder / "second");
   write_text_file(folder / "first", "text");  // dangling so far
   EXPECT_TRUE(fs::is_symlink(folder / "first"));
-  EXPECT_EQ(test::bytes_of(folder / "there/file").size(), 4U);
+  EXPECT_EQ(bytes_of(folder / "there/file").size(), 4U);
   write_text_file(folder / "first", "longer text");
-  EXPECT_EQ(test::bytes_of(folder / "there/file").size(), 11U);
+  EXPECT_EQ(bytes_of(folder / "there/file").size(), 11U);
   EXPECT_THAT(names_in(folder.path()), UnorderedElementsAre("there", "first", "second"));
   EXPECT_THAT(names_in(folder / "there"), UnorderedElementsAre("file"));
 
   fs::create_symlink("none/file", folder / "lost");
-  EXPECT_THAT(test::error_of([&] { write_text_file(folder / "lost", "text"); }),
+  EXPECT_THAT(error_of([&] { write_text_file(folder / "lost", "text"); }),
               testing::HasSubstr("there is no folder"));
   fs::create_symlink("circle", folder / "circle");
   EXPECT_EQ(through_links(folder / "circle"), folder / "circle");
@@ -54,11 +45,11 @@ TEST(AtomicFileName, MayBeAsLongAsFileSystemsAllow) {
       }
       name += end;
       write_text_file(folder / name, "text");
-      EXPECT_EQ(test::bytes_of(folder / name).size(), 4U);
+      EXPECT_EQ(bytes_of(folder / name).size(), 4U);
       const std::string temporary = temporary_name(name, 2147483647);
       EXPECT_LE(temporary.size(), 255U);
       EXPECT_TRUE(final_name_of(temporary));
-      test::put_text(folder / temporary, "left");
+      put_text(folder / temporary, "left");
       remove_temporary_files_of(folder / name);
       EXPECT_FALSE(fs::exists(folder / temporary));
     }
@@ -81,5 +72,4 @@ TEST(TemporaryName, TellsWhatItIsOf) {
   }
 }
 
-}  // namespace atomic_file_test
-}  // namespace vantage
+}  // namespace vantage::atomic_file_test

@@ -1,19 +1,10 @@
 #include "engine/synthesis/background_inpainting.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <type_traits>
-#include <utility>
-
 #include "engine/matching/stereo_matcher.h"
 #include "kernels/pixel_row/pixel_row.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace background_inpainting_test {
+namespace vantage::background_inpainting_test {
 
 template <typename T>
 struct Scene {
@@ -27,10 +18,8 @@ struct Scene {
     std::mt19937 random(41);
     wanted.fill(0);
     disparity_px.fill(2);
-    for (int y = 0; y < height; ++y) {
-      for (int k = 0; k < width * channels; ++k) {
-        image.row(y)[k] = level(0.25 + 0.02 * static_cast<double>(random() % 2));
-      }
+    for (const auto [k, y] : positions_of(width * channels, height)) {
+      image.row(y)[k] = level(0.25 + 0.02 * static_cast<double>(random() % 2));
     }
   }
   static T level(double part) { return static_cast<T>(part * kernels::kLargestValue<T>); }
@@ -48,7 +37,6 @@ struct Scene {
 
 template <typename T>
 class BackgroundInpainting : public testing::Test {};
-using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(BackgroundInpainting, PixelTypes);
 
 // A bright object covers the hole's left side, from top to bottom; a wire crosses its right side.
@@ -61,28 +49,24 @@ TYPED_TEST(BackgroundInpainting, LooksAtTheBackgroundOnly) {
         scene.image.at(x, y, c) = Scene<TypeParam>::level(1);
       }
     };
-    for (int y = 0; y < 47; ++y) {
-      for (int x = 0; x < 60; ++x) {
-        if (x < 20 || x == 42) {
-          bright(x, y);
-        } else if (x < 40 && y > 5 && y < 40) {
-          scene.cut(x, y);
-        }
+    for (const auto [x, y] : positions_of(60, 47)) {
+      if (x < 20 || x == 42) {
+        bright(x, y);
+      } else if (x < 40 && y > 5 && y < 40) {
+        scene.cut(x, y);
       }
     }
     const Image<TypeParam> before = scene.image.copy();
     scene.paint();
-    for (int y = 0; y < 47; ++y) {
-      for (int x = 0; x < 60; ++x) {
-        for (int c = 0; c < channels; ++c) {
-          const double value = static_cast<double>(scene.image.at(x, y, c));
-          if (scene.wanted.at(x, y) == 0) {
-            ASSERT_EQ(scene.image.at(x, y, c), before.at(x, y, c));
-          } else {
-            // The method extrapolates gradients a little.
-            ASSERT_GT(value, 0.1 * kernels::kLargestValue<TypeParam>) << x << ", " << y;
-            ASSERT_LT(value, 0.4 * kernels::kLargestValue<TypeParam>) << x << ", " << y;
-          }
+    for (const auto [x, y] : positions_of(60, 47)) {
+      for (int c = 0; c < channels; ++c) {
+        const double value = static_cast<double>(scene.image.at(x, y, c));
+        if (scene.wanted.at(x, y) == 0) {
+          ASSERT_EQ(scene.image.at(x, y, c), before.at(x, y, c));
+        } else {
+          // The method extrapolates gradients a little.
+          ASSERT_GT(value, 0.1 * kernels::kLargestValue<TypeParam>) << x << ", " << y;
+          ASSERT_LT(value, 0.4 * kernels::kLargestValue<TypeParam>) << x << ", " << y;
         }
       }
     }
@@ -95,11 +79,9 @@ TYPED_TEST(BackgroundInpainting, NothingWantedOrNothingThere) {
     const TypeParam corner = scene.image.at(0, 0, 0);
     scene.paint();
     EXPECT_EQ(scene.image.at(0, 0, 0), corner);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        scene.cut(x, y);
-        scene.disparity_px.at(x, y) = std::numeric_limits<float>::quiet_NaN();
-      }
+    for (const auto [x, y] : positions_of(width, height)) {
+      scene.cut(x, y);
+      scene.disparity_px.at(x, y) = std::numeric_limits<float>::quiet_NaN();
     }
     scene.paint();
     EXPECT_EQ(scene.image.at(width - 1, height - 1, 2), TypeParam{0});
@@ -112,23 +94,18 @@ TYPED_TEST(BackgroundInpainting, NothingWantedOrNothingThere) {
 
 TEST(BackgroundInpaintingFloat, KeepsToTheImagesRange) {
   Scene<float> scene(40, 40, 1);
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 40; ++x) {
-      scene.image.at(x, y) = static_cast<float>(x) / 10 - 1;  // −1..2.9
-      if (x > 30 && y > 10 && y < 30) {
-        scene.cut(x, y);
-      }
+  for (const auto [x, y] : positions_of(40, 40)) {
+    scene.image.at(x, y) = static_cast<float>(x) / 10 - 1;  // −1..2.9
+    if (x > 30 && y > 10 && y < 30) {
+      scene.cut(x, y);
     }
   }
   scene.paint();
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 31; x < 40; ++x) {
-      ASSERT_GE(scene.image.at(x, y), -1);
-      ASSERT_LE(scene.image.at(x, y), 2.9F);
-    }
+  for (const auto [x, y] : positions_of({31, 40}, {0, 40})) {
+    ASSERT_GE(scene.image.at(x, y), -1);
+    ASSERT_LE(scene.image.at(x, y), 2.9F);
   }
   EXPECT_GT(scene.image.at(32, 20), 1.5F);
 }
 
-}  // namespace background_inpainting_test
-}  // namespace vantage
+}  // namespace vantage::background_inpainting_test

@@ -1,18 +1,9 @@
 #include "engine/synthesis/background_texture.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <utility>
-
 #include "kernels/pixel_row/pixel_row.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace background_texture_test {
+namespace vantage::background_texture_test {
 
 /// A background of slanted stripes, with holes beside bright objects in front of it.
 template <typename T>
@@ -25,10 +16,8 @@ struct Scene {
       : image(width, height, channels), wanted(width, height), disparity_px(width, height) {
     wanted.fill(0);
     disparity_px.fill(2);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        set(x, y, stripe(x, y));
-      }
+    for (const auto [x, y] : positions_of(width, height)) {
+      set(x, y, stripe(x, y));
     }
   }
   static double stripe(int x, int y) { return 0.1 * static_cast<double>((x + 2 * y) % 7); }
@@ -55,20 +44,17 @@ struct Scene {
 
 template <typename T>
 class BackgroundTexture : public testing::Test {};
-using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(BackgroundTexture, PixelTypes);
 
 /// Holes at the right and left of two objects, one of them narrower than a patch.
 template <typename T>
 Scene<T> scene_with_objects(int channels) {
   Scene<T> scene(90, 61, channels);
-  for (int y = 0; y < 61; ++y) {
-    for (int x = 0; x < 90; ++x) {
-      if (x >= 50 && x < 60) {
-        scene.add_object(x, y);
-      } else if ((x >= 60 && x < 74 && y > 12 && y < 50) || (x >= 47 && x < 50 && y < 40)) {
-        scene.cut(x, y);
-      }
+  for (const auto [x, y] : positions_of(90, 61)) {
+    if (x >= 50 && x < 60) {
+      scene.add_object(x, y);
+    } else if ((x >= 60 && x < 74 && y > 12 && y < 50) || (x >= 47 && x < 50 && y < 40)) {
+      scene.cut(x, y);
     }
   }
   return scene;
@@ -81,25 +67,21 @@ TYPED_TEST(BackgroundTexture, GoesOnAndIsNeverTheObjects) {
     const Scene<TypeParam> truth(90, 61, channels);
     scene.synthesize(2);
     int wrong = 0;
-    for (int y = 0; y < 61; ++y) {
-      for (int x = 0; x < 90; ++x) {
-        for (int c = 0; c < channels; ++c) {
-          if (scene.wanted.at(x, y) == 0) {
-            ASSERT_EQ(scene.image.at(x, y, c), before.image.at(x, y, c));
-            continue;
-          }
-          ASSERT_LE(scene.image.at(x, y, c), Scene<TypeParam>::level(0.6)) << x << ", " << y;
-          wrong += scene.image.at(x, y, c) == truth.image.at(x, y, c) ? 0 : 1;
+    for (const auto [x, y] : positions_of(90, 61)) {
+      for (int c = 0; c < channels; ++c) {
+        if (scene.wanted.at(x, y) == 0) {
+          ASSERT_EQ(scene.image.at(x, y, c), before.image.at(x, y, c));
+          continue;
         }
+        ASSERT_LE(scene.image.at(x, y, c), Scene<TypeParam>::level(0.6)) << x << ", " << y;
+        wrong += scene.image.at(x, y, c) == truth.image.at(x, y, c) ? 0 : 1;
       }
     }
     EXPECT_EQ(wrong, 0);
     Scene<TypeParam> on_one_thread = scene_with_objects<TypeParam>(channels);
     on_one_thread.synthesize(1);
-    for (int y = 0; y < 61; ++y) {
-      for (int k = 0; k < 90 * channels; ++k) {
-        ASSERT_EQ(scene.image.row(y)[k], on_one_thread.image.row(y)[k]);
-      }
+    for (const auto [k, y] : positions_of(90 * channels, 61)) {
+      ASSERT_EQ(scene.image.row(y)[k], on_one_thread.image.row(y)[k]);
     }
   }
 }
@@ -110,10 +92,8 @@ TEST(BackgroundTextureOfNoise, TakesNothingFromSurfacesInFront) {
   constexpr int kShift = 30;
   Scene<std::uint8_t> scene(90, 40, 3);
   std::mt19937 random(7);
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 90; ++x) {
-      scene.set(x, y, 0.1 * static_cast<double>(random() % 6));
-    }
+  for (const auto [x, y] : positions_of(90, 40)) {
+    scene.set(x, y, 0.1 * static_cast<double>(random() % 6));
   }
   for (int y = 0; y < 40; ++y) {
     for (int x = 20; x < 40; ++x) {
@@ -127,10 +107,8 @@ TEST(BackgroundTextureOfNoise, TakesNothingFromSurfacesInFront) {
     }
   }
   scene.synthesize(1);
-  for (int y = 0; y < 40; ++y) {
-    for (int x = kHole; x < kHole + 7; ++x) {
-      ASSERT_LE(scene.image.at(x, y), Scene<std::uint8_t>::level(0.5)) << x << ", " << y;
-    }
+  for (const auto [x, y] : positions_of({kHole, kHole + 7}, {0, 40})) {
+    ASSERT_LE(scene.image.at(x, y), Scene<std::uint8_t>::level(0.5)) << x << ", " << y;
   }
 }
 
@@ -154,5 +132,4 @@ TYPED_TEST(BackgroundTexture, OfImagesOfAnySize) {
   }
 }
 
-}  // namespace background_texture_test
-}  // namespace vantage
+}  // namespace vantage::background_texture_test

@@ -1,16 +1,9 @@
 #include "engine/io/files/encoded_text.h"
 
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "tests/decoded_base64.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace base64_test {
+namespace vantage::base64_test {
 
 std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
 
@@ -40,9 +33,8 @@ TEST(Base64, ComesBackWhateverTheLength) {
     const std::string text = encode_base64(bytes);
     EXPECT_EQ(text.size(), (size + 2) / 3 * 4);
     EXPECT_EQ(text.find('\0'), std::string::npos);
-    EXPECT_EQ(test::decoded_base64(text), bytes) << size;
+    EXPECT_EQ(decoded_base64(text), bytes) << size;
   }
 }
 
-}  // namespace base64_test
-}  // namespace vantage
+}  // namespace vantage::base64_test

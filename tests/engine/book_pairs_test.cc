@@ -1,16 +1,8 @@
 #include "engine/generation/book_pairs.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
-#include "engine/error.h"
-
-namespace vantage {
-namespace book_pairs_test {
+namespace vantage::book_pairs_test {
 
 const Image<std::uint8_t>& bytes_of(const Photograph& photograph) {
   return std::get<Image<std::uint8_t>>(photograph.pixels);
@@ -30,10 +22,8 @@ int count(const DisparityMap& map, float disparity) {
 std::uint64_t fingerprint(const Photograph& photograph) {
   const Image<std::uint8_t>& image = bytes_of(photograph);
   std::uint64_t hash = 14695981039346656037U;
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      hash = (hash ^ image.at(x, y)) * 1099511628211U;
-    }
+  for (const auto [x, y] : positions_of(image)) {
+    hash = (hash ^ image.at(x, y)) * 1099511628211U;
   }
   return hash;
 }
@@ -99,17 +89,15 @@ TEST(BookPairs, PartnersHaveEqualIntensityAndTruthAtAnySize) {
           options.background_disparity_px = background;
           const BookPair pair = make_book_pair(options);
           int visible = 0;
-          for (int y = 0; y < size.height; ++y) {
-            for (int x = 0; x < size.width; ++x) {
-              if (pair.left_occluded.at(x, y) == 0) {
-                ++visible;
-                const int partner = x - static_cast<int>(pair.left_disparity.at(x, y));
-                ASSERT_EQ(bytes_of(pair.left).at(x, y), bytes_of(pair.right).at(partner, y));
-                ASSERT_EQ(pair.left_disparity.at(x, y), pair.right_disparity.at(partner, y));
-                ASSERT_EQ(pair.right_occluded.at(partner, y), 0);
-              }
-              visible -= pair.right_occluded.at(x, y) == 0 ? 1 : 0;
+          for (const auto [x, y] : positions_of(size.width, size.height)) {
+            if (pair.left_occluded.at(x, y) == 0) {
+              ++visible;
+              const int partner = x - static_cast<int>(pair.left_disparity.at(x, y));
+              ASSERT_EQ(bytes_of(pair.left).at(x, y), bytes_of(pair.right).at(partner, y));
+              ASSERT_EQ(pair.left_disparity.at(x, y), pair.right_disparity.at(partner, y));
+              ASSERT_EQ(pair.right_occluded.at(partner, y), 0);
             }
+            visible -= pair.right_occluded.at(x, y) == 0 ? 1 : 0;
           }
           EXPECT_EQ(visible, 0) << "as many pixels of one image as of the other have a partner";
         }
@@ -128,13 +116,11 @@ TEST(BookPairs, OtherImageHoldsTheUnbrokenRamp) {
     const Image<float>& unbroken = floats_of(left ? pair.right : pair.left);
     const Image<float>& broken = floats_of(left ? pair.left : pair.right);
     float steepest = 0;
-    for (int y = 0; y < 100; ++y) {
-      for (int x = 1; x < 100; ++x) {
-        ASSERT_NEAR(255 * (unbroken.at(x, y) - unbroken.at(x - 1, y)), 2.5, 1e-4);
-        steepest = std::max(steepest, 255 * std::abs(broken.at(x, y) - broken.at(x - 1, y)));
-        ASSERT_GE(broken.at(x, y), 0);
-        ASSERT_LE(broken.at(x, y), 1);
-      }
+    for (const auto [x, y] : positions_of({1, 100}, {0, 100})) {
+      ASSERT_NEAR(255 * (unbroken.at(x, y) - unbroken.at(x - 1, y)), 2.5, 1e-4);
+      steepest = std::max(steepest, 255 * std::abs(broken.at(x, y) - broken.at(x - 1, y)));
+      ASSERT_GE(broken.at(x, y), 0);
+      ASSERT_LE(broken.at(x, y), 1);
     }
     EXPECT_NEAR(steepest, 2.5 * 5, 1e-3);
   }
@@ -147,12 +133,10 @@ TEST(BookPairs, TexturesHaveTheStatedStatistics) {
   const BookPair grass = make_book_pair(options);
   double sum = 0;
   double square_sum = 0;
-  for (int y = 0; y < 300; ++y) {
-    for (int x = 0; x < 300; ++x) {
-      const double level = 255 * floats_of(grass.left).at(x, y);
-      sum += level;
-      square_sum += level * level;
-    }
+  for (const auto [x, y] : positions_of(300, 300)) {
+    const double level = 255 * floats_of(grass.left).at(x, y);
+    sum += level;
+    square_sum += level * level;
   }
   const double mean = sum / 90000;
   EXPECT_NEAR(mean, 112, 1);
@@ -160,12 +144,10 @@ TEST(BookPairs, TexturesHaveTheStatedStatistics) {
 
   const BookPair dots = make_book_pair(book_pair_options("rds-square"));
   int bright = 0;
-  for (int y = 0; y < 100; ++y) {
-    for (int x = 0; x < 100; ++x) {
-      const int level = bytes_of(dots.right).at(x, y);
-      ASSERT_TRUE(level == 64 || level == 192);
-      bright += level == 192 ? 1 : 0;
-    }
+  for (const auto [x, y] : positions_of(100, 100)) {
+    const int level = bytes_of(dots.right).at(x, y);
+    ASSERT_TRUE(level == 64 || level == 192);
+    bright += level == 192 ? 1 : 0;
   }
   EXPECT_NEAR(bright, 5000, 250);
 }
@@ -180,15 +162,13 @@ TEST(BookPairs, NoiseIsRealValuedAndIndependent) {
   double left_squares = 0;
   double right_squares = 0;
   double products = 0;
-  for (int y = 0; y < 100; ++y) {
-    for (int x = 0; x < 100; ++x) {
-      const double left = 255.0 * (floats_of(noisy.left).at(x, y) - floats_of(clean.left).at(x, y));
-      const double right =
-          255.0 * (floats_of(noisy.right).at(x, y) - floats_of(clean.right).at(x, y));
-      left_squares += left * left;
-      right_squares += right * right;
-      products += left * right;
-    }
+  for (const auto [x, y] : positions_of(100, 100)) {
+    const double left = 255.0 * (floats_of(noisy.left).at(x, y) - floats_of(clean.left).at(x, y));
+    const double right =
+        255.0 * (floats_of(noisy.right).at(x, y) - floats_of(clean.right).at(x, y));
+    left_squares += left * left;
+    right_squares += right * right;
+    products += left * right;
   }
   EXPECT_NEAR(std::sqrt(left_squares / 10000), 4, 0.1);
   EXPECT_NEAR(std::sqrt(right_squares / 10000), 4, 0.1);
@@ -225,5 +205,4 @@ TEST(BookPairs, RejectsWrongOptions) {
   EXPECT_THROW((void)make_book_pair(options), UsageError);
 }
 
-}  // namespace book_pairs_test
-}  // namespace vantage
+}  // namespace vantage::book_pairs_test

@@ -1,14 +1,11 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
-#include <random>
-#include <vector>
 
 #include "engine/rectification/stereo_calibration.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// The lens model as a formula: the pixel of the point (x, y, 1), in double, without any limit.
 inline Eigen::Vector2d plain_projection(const Camera& camera, double x, double y) {
@@ -71,4 +68,4 @@ inline StereoCalibration random_calibration(std::mt19937& random, int width, int
   return calibration;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,27 +1,22 @@
 #include "engine/rectification/camera.h"
 
-#include <gtest/gtest.h>
-
-#include <random>
-
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace camera_test {
+namespace vantage::camera_test {
 
 TEST(LensModel, IsTheFormulaOfItsCoefficients) {
   std::mt19937 random(1);
   for (const int coefficients : {0, 4, 5, 8, 12, 14}) {
     for (int trial = 0; trial < 20; ++trial) {
-      const Camera camera = test::random_camera(random, 640, 480, coefficients);
+      const Camera camera = random_camera(random, 640, 480, coefficients);
       const LensModel lens(camera);
       for (int i = 0; i < 50; ++i) {
-        const double x = test::uniform(random, -0.5, 0.5);
-        const double y = test::uniform(random, -0.4, 0.4);
+        const double x = uniform(random, -0.5, 0.5);
+        const double y = uniform(random, -0.4, 0.4);
         const auto position = lens.position_of({x, y});
         ASSERT_TRUE(position);
-        EXPECT_LT((*position - test::plain_projection(camera, x, y)).norm(), 1e-9)
+        EXPECT_LT((*position - plain_projection(camera, x, y)).norm(), 1e-9)
             << coefficients << " coefficients at " << x << ", " << y;
       }
     }
@@ -32,10 +27,9 @@ TEST(LensModel, RaysAreTheInverse) {
   std::mt19937 random(2);
   for (const int coefficients : {0, 4, 5, 8, 12, 14}) {
     for (int trial = 0; trial < 20; ++trial) {
-      const LensModel lens(test::random_camera(random, 640, 480, coefficients));
+      const LensModel lens(random_camera(random, 640, 480, coefficients));
       for (int i = 0; i < 50; ++i) {
-        const Eigen::Vector2d ray(test::uniform(random, -0.6, 0.6),
-                                  test::uniform(random, -0.5, 0.5));
+        const Eigen::Vector2d ray(uniform(random, -0.6, 0.6), uniform(random, -0.5, 0.5));
         const auto position = lens.position_of(ray);
         ASSERT_TRUE(position);
         const auto again = lens.ray_of(*position);
@@ -71,7 +65,7 @@ TEST(Camera, RefusesWhatIsNoCamera) {
     Camera camera;
     camera.matrix << 500, 0, 320, 0, 500, 240, 0, 0, 1;
     change(camera);
-    return test::error_of([&] { camera.validate("left camera"); });
+    return error_of([&] { camera.validate("left camera"); });
   };
   EXPECT_EQ(error_with([](Camera&) {}), "");
   EXPECT_EQ(error_with([](Camera& c) { c.matrix(0, 0) = -1; }),
@@ -89,5 +83,4 @@ TEST(Camera, RefusesWhatIsNoCamera) {
             std::string::npos);
 }
 
-}  // namespace camera_test
-}  // namespace vantage
+}  // namespace vantage::camera_test

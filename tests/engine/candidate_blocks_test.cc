@@ -1,16 +1,8 @@
 #include "engine/matching/levels/candidate_blocks.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cstdint>
-#include <cstdlib>
-#include <map>
-#include <random>
-#include <vector>
-
-namespace vantage {
-namespace candidate_blocks_test {
+namespace vantage::candidate_blocks_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
@@ -18,13 +10,11 @@ using scheduler::Extent;
 Image<std::int32_t> random_winners(Extent extent, int candidates, unsigned seed) {
   std::mt19937 random(seed);
   Image<std::int32_t> winners((extent.columns + 1) / 2, (extent.rows + 1) / 2);
-  for (int y = 0; y < winners.height(); ++y) {
-    for (int x = 0; x < winners.width(); ++x) {
-      // Neighbours are mostly alike.
-      winners.at(x, y) = random() % 3 == 0 || x == 0
-                             ? static_cast<int>(random() % static_cast<unsigned>(candidates))
-                             : winners.at(x - 1, y);
-    }
+  for (const auto [x, y] : positions_of(winners)) {
+    // Neighbours are mostly alike.
+    winners.at(x, y) = random() % 3 == 0 || x == 0
+                           ? static_cast<int>(random() % static_cast<unsigned>(candidates))
+                           : winners.at(x - 1, y);
   }
   return winners;
 }
@@ -33,22 +23,20 @@ Image<std::int32_t> random_winners(Extent extent, int candidates, unsigned seed)
 std::vector<std::uint16_t> plain_blocks(const Image<std::int32_t>& winners, int candidates, int max,
                                         int x, int y) {
   std::map<int, int> votes;
-  for (int v = 0; v < winners.height(); ++v) {
-    for (int u = 0; u < winners.width(); ++u) {
-      const bool is_near =
-          u >= x / 8 * 4 - 1 && u <= x / 8 * 4 + 4 && v >= y / 8 * 4 - 1 && v <= y / 8 * 4 + 4;
-      if (!is_near) {
-        continue;
+  for (const auto [u, v] : positions_of(winners)) {
+    const bool is_near =
+        u >= x / 8 * 4 - 1 && u <= x / 8 * 4 + 4 && v >= y / 8 * 4 - 1 && v <= y / 8 * 4 + 4;
+    if (!is_near) {
+      continue;
+    }
+    std::map<int, bool> touched;
+    for (int candidate = winners.at(u, v) - 2; candidate <= winners.at(u, v) + 2; ++candidate) {
+      if (candidate >= 0 && candidate < candidates) {
+        touched[candidate / 16] = true;
       }
-      std::map<int, bool> touched;
-      for (int candidate = winners.at(u, v) - 2; candidate <= winners.at(u, v) + 2; ++candidate) {
-        if (candidate >= 0 && candidate < candidates) {
-          touched[candidate / 16] = true;
-        }
-      }
-      for (const auto& block : touched) {
-        ++votes[block.first];
-      }
+    }
+    for (const auto& block : touched) {
+      ++votes[block.first];
     }
   }
   std::vector<std::pair<int, int>> order;  // most votes first
@@ -67,7 +55,6 @@ std::vector<std::uint16_t> plain_blocks(const Image<std::int32_t>& winners, int 
 }
 
 TEST(CandidateBlocks, AreThoseWithTheMostVotes) {
-  Execution execution({.threads = 2});
   unsigned seed = 0;
   for (const Extent extent :
        {Extent{1, 1}, Extent{7, 2}, Extent{8, 8}, Extent{9, 17}, Extent{37, 29}, Extent{64, 3}}) {
@@ -76,23 +63,21 @@ TEST(CandidateBlocks, AreThoseWithTheMostVotes) {
         const auto winners = random_winners(extent, candidates, ++seed);
         CandidateBlocks blocks;
         blocks.resize(extent, candidates, max);
-        blocks.choose(winners.view(), std::nullopt, execution);
+        blocks.choose(winners.view(), std::nullopt, execution());
         EXPECT_EQ(blocks.lanes(), 16 * std::min(max, (candidates + 15) / 16));
         double cells = 0;
-        for (int y = 0; y < extent.rows; ++y) {
-          for (int x = 0; x < extent.columns; ++x) {
-            const BlockList list = blocks.at(x, y);
-            const auto expected = plain_blocks(winners, candidates, max, x, y);
-            ASSERT_TRUE(std::ranges::equal(list, expected))
-                << extent.columns << "x" << extent.rows << ", " << candidates << " candidates, at "
-                << x << ", " << y;
-            int count = 0;
-            for (int lane = 0; lane < 16 * static_cast<int>(list.size()); ++lane) {
-              count += candidate_of(list, lane) < candidates ? 1 : 0;
-            }
-            ASSERT_EQ(blocks.count(list), count);
-            cells += count;
+        for (const auto [x, y] : positions_of(extent.columns, extent.rows)) {
+          const BlockList list = blocks.at(x, y);
+          const auto expected = plain_blocks(winners, candidates, max, x, y);
+          ASSERT_TRUE(std::ranges::equal(list, expected))
+              << extent.columns << "x" << extent.rows << ", " << candidates << " candidates, at "
+              << x << ", " << y;
+          int count = 0;
+          for (int lane = 0; lane < 16 * static_cast<int>(list.size()); ++lane) {
+            count += candidate_of(list, lane) < candidates ? 1 : 0;
           }
+          ASSERT_EQ(blocks.count(list), count);
+          cells += count;
         }
         EXPECT_EQ(blocks.cells(), cells);
       }
@@ -102,40 +87,34 @@ TEST(CandidateBlocks, AreThoseWithTheMostVotes) {
 
 TEST(CandidateBlocks, SmoothTilesHaveSmallSteps) {
   using enum CandidateBlocks::SmoothTiles;
-  Execution execution({.threads = 2});
   const Extent extent{96, 48};
   for (const int step : {2, 3}) {
     for (const bool is_down : {false, true}) {
       Image<std::int32_t> winners(extent.columns / 2, extent.rows / 2);
-      for (int y = 0; y < winners.height(); ++y) {
-        for (int x = 0; x < winners.width(); ++x) {
-          // A slope of 2, and one step in the third of 12 columns or 6 rows of tiles.
-          const int at = is_down ? y : x;
-          winners.at(x, y) = 2 * at + (at > 9 ? step - 2 : 0);
-        }
+      for (const auto [x, y] : positions_of(winners)) {
+        // A slope of 2, and one step in the third of 12 columns or 6 rows of tiles.
+        const int at = is_down ? y : x;
+        winners.at(x, y) = 2 * at + (at > 9 ? step - 2 : 0);
       }
       CandidateBlocks blocks;
       blocks.resize(extent, 130, 2);
-      blocks.choose(winners.view(), std::nullopt, execution, kLeftOut);
-      for (int tile_y = 0; tile_y < 6; ++tile_y) {
-        for (int tile_x = 0; tile_x < 12; ++tile_x) {
-          SCOPED_TRACE(testing::Message() << step << ": " << tile_x << ", " << tile_y);
-          const int tile = is_down ? tile_y : tile_x;
-          const bool is_rough = step == 3 && tile == 2;
-          EXPECT_EQ(blocks.smooth().at(tile_x, tile_y), !is_rough);
-          // Tiles beside rough ones along the row are made, and all around them have blocks.
-          const int made = is_down ? 0 : 1;
-          const auto run = blocks.run_at(8 * tile_x, 8 * tile_y, extent.columns);
-          EXPECT_EQ(run.is_wanted, step == 3 && std::abs(tile - 2) <= made);
-          EXPECT_EQ(run.blocks.empty(), step == 2 || std::abs(tile - 2) > made + 1);
-        }
+      blocks.choose(winners.view(), std::nullopt, execution(), kLeftOut);
+      for (const auto [tile_x, tile_y] : positions_of(12, 6)) {
+        SCOPED_TRACE(testing::Message() << step << ": " << tile_x << ", " << tile_y);
+        const int tile = is_down ? tile_y : tile_x;
+        const bool is_rough = step == 3 && tile == 2;
+        EXPECT_EQ(blocks.smooth().at(tile_x, tile_y), !is_rough);
+        // Tiles beside rough ones along the row are made, and all around them have blocks.
+        const int made = is_down ? 0 : 1;
+        const auto run = blocks.run_at(8 * tile_x, 8 * tile_y, extent.columns);
+        EXPECT_EQ(run.is_wanted, step == 3 && std::abs(tile - 2) <= made);
+        EXPECT_EQ(run.blocks.empty(), step == 2 || std::abs(tile - 2) > made + 1);
       }
     }
   }
 }
 
 TEST(CandidateBlocks, RunsCoverARowAndHaveOneListEach) {
-  Execution execution({.threads = 1});
   const Extent extent{217, 9};
   auto winners = random_winners(extent, 60, 3);
   for (int x = 40; x < winners.width(); ++x) {  // a long stretch of equal tiles
@@ -145,7 +124,7 @@ TEST(CandidateBlocks, RunsCoverARowAndHaveOneListEach) {
   }
   CandidateBlocks blocks;
   blocks.resize(extent, 60, 2);
-  blocks.choose(winners.view(), std::nullopt, execution);
+  blocks.choose(winners.view(), std::nullopt, execution());
   int longest = 0;
   for (const int y : {0, 8}) {
     for (const int begin : {0, 3, 8, 100}) {
@@ -167,7 +146,6 @@ TEST(CandidateBlocks, RunsCoverARowAndHaveOneListEach) {
 }
 
 TEST(CandidateBlocks, LeaveEveryPixelACandidateWithAPartner) {
-  Execution execution({.threads = 1});
   unsigned seed = 50;
   for (const int direction : {-1, 1}) {
     for (const int width : {3, 8, 21, 130}) {
@@ -177,7 +155,7 @@ TEST(CandidateBlocks, LeaveEveryPixelACandidateWithAPartner) {
         const Extent extent{width, 9};
         CandidateBlocks blocks;
         blocks.resize(extent, 100, 1);
-        blocks.choose(random_winners(extent, 100, ++seed).view(), geometry, execution);
+        blocks.choose(random_winners(extent, 100, ++seed).view(), geometry, execution());
         for (int x = 0; x < width; ++x) {
           const auto inside = geometry.with_partner(x);
           if (inside.empty()) {
@@ -221,5 +199,4 @@ TEST(CopyBlocks, FillsWhatIsMissing) {
   }
 }
 
-}  // namespace candidate_blocks_test
-}  // namespace vantage
+}  // namespace vantage::candidate_blocks_test

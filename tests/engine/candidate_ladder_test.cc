@@ -1,15 +1,8 @@
 #include "engine/tuning/candidate_ladder.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace candidate_ladder_test {
-
-using testing::Each;
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::Not;
+namespace vantage::candidate_ladder_test {
 
 TEST(CoarseLadder, ReachesFromOneToTheMost) {
   EXPECT_THAT(coarse_ladder(1), ElementsAre(1));
@@ -26,5 +19,4 @@ TEST(FineLadder, IsAroundTheValueWithinTheRange) {
   EXPECT_THAT(fine_ladder(7, 1000), Each(Not(7)));
 }
 
-}  // namespace candidate_ladder_test
-}  // namespace vantage
+}  // namespace vantage::candidate_ladder_test

@@ -1,31 +1,16 @@
 // Candidates between pixels, of every method, against the plain transcription.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <string>
-
-#include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace candidate_step_test {
-
-using test::expect_equals_oracle;
-using test::identical;
-using test::method_cases;
-using test::MethodCase;
-using test::PixelKind;
-using test::textured_pair;
-using test::tolerance_of;
+namespace vantage::candidate_step_test {
 
 class CandidateStep : public ::testing::TestWithParam<MethodCase> {};
 
 TEST_P(CandidateStep, EqualsTheOracle) {
-  if (test::is_stepped(GetParam()) && GetParam().options.resolved().levels == 1) {
+  if (is_stepped(GetParam()) && GetParam().options.resolved().levels == 1) {
     GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test";
   }
   struct Shape {
@@ -47,7 +32,7 @@ TEST_P(CandidateStep, EqualsTheOracle) {
     if (is_small && options.resolved().border == Border::kValid) {
       continue;
     }
-    test::Tolerance tolerance = tolerance_of(options.resolved());
+    Tolerance tolerance = tolerance_of(options.resolved());
     if (options.resolved().levels > 1) {  // stored levels are rounded, see coarse_to_fine_test
       tolerance.share = 0.9;
       tolerance.confidence_share = 0;
@@ -62,31 +47,6 @@ INSTANTIATE_TEST_SUITE_P(Methods, CandidateStep, ::testing::ValuesIn(method_case
                          [](const auto& instance) { return instance.param.name; });
 
 /// Maps of whole presets, with pruning, check maps and coarse winners.
-TEST(CandidateSteps, PresetsDoNotDependOnTheExecution) {
-  const auto pair = textured_pair(90, 61, {0, 20}, PixelKind::kGrey8, 8);
-  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
-                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
-    MatchOptions options;
-    options.preset = preset;
-    options.disparities = {0, 20};
-    options.parameters.candidate_step_px = 0.5;
-    DisparityMaps maps[2];
-    int number = 0;
-    for (const ExecutionOptions& with :
-         {ExecutionOptions{.threads = 1, .executor = scheduler::ExecutorKind::kSerial},
-          ExecutionOptions{.threads = 2, .strip_width_px = 23, .band_height_px = 7}}) {
-      Execution execution(with);
-      StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps[number++]);
-    }
-    EXPECT_TRUE(identical(maps[0].left.disparity_px, maps[1].left.disparity_px));
-    EXPECT_TRUE(identical(maps[0].right.disparity_px, maps[1].right.disparity_px));
-    // The left map does not depend on whether the right one is wanted.
-    Execution execution({.threads = 2});
-    StereoMatcher(options, execution).match(pair.left, pair.right, {.right = false}, maps[1]);
-    EXPECT_TRUE(identical(maps[0].left.disparity_px, maps[1].left.disparity_px));
-  }
-}
-
 /// A plane whose disparity is half a pixel: without sub-pixel positions only such candidates find
 /// it.
 TEST(CandidateSteps, FindHalfPixels) {
@@ -114,9 +74,8 @@ TEST(CandidateSteps, FindHalfPixels) {
     options.raw = true;
     options.parameters.subpixel = Subpixel::kNone;
     options.parameters.candidate_step_px = 0.5;
-    Execution execution({.threads = 1});
     DisparityMaps maps;
-    StereoMatcher(options, execution).match(photographs[0], photographs[1], {}, maps);
+    StereoMatcher(options, execution()).match(photographs[0], photographs[1], {}, maps);
     int found = 0;
     int pixels = 0;
     for (int y = 5; y < 35; ++y) {
@@ -147,5 +106,4 @@ TEST(CandidateSteps, AreRefusedWhereTheyHaveNoMeaning) {
   EXPECT_THROW(options.validate(), UsageError);
 }
 
-}  // namespace candidate_step_test
-}  // namespace vantage
+}  // namespace vantage::candidate_step_test

@@ -1,21 +1,10 @@
 #include "engine/refinement/canonical_fill.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <random>
-#include <vector>
-
 #include "engine/refinement/refine_maps.h"
 #include "engine/refinement/uniform_pixels.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace canonical_fill_test {
+namespace vantage::canonical_fill_test {
 
 /// A map whose values are known everywhere but in a region.
 struct Hole {
@@ -27,11 +16,9 @@ struct Hole {
        const std::function<bool(int, int)>& is_inside)
       : map(width, height), region(width, height), grey(width, height) {
     grey.fill(0);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        region.at(x, y) = is_inside(x, y) ? 255 : 0;
-        map.at(x, y) = is_inside(x, y) ? std::nanf("") : value(x, y);
-      }
+    for (const auto [x, y] : positions_of(width, height)) {
+      region.at(x, y) = is_inside(x, y) ? 255 : 0;
+      map.at(x, y) = is_inside(x, y) ? std::nanf("") : value(x, y);
     }
   }
 
@@ -66,10 +53,8 @@ TEST(CanonicalFill, OfAPlaneIsThePlaneInBothDirections) {
     const int top = energy == SurfaceEnergy::kMembrane ? 30 : 3;
     Hole hole(43, 60, plane, [top](int x, int y) { return is_in_region(x, y - top + 3); });
     hole.fill(energy);
-    for (int y = 0; y < 60; ++y) {
-      for (int x = 0; x < 43; ++x) {
-        ASSERT_NEAR(hole.map.at(x, y), plane(x, y), 5e-3) << x << ", " << y;
-      }
+    for (const auto [x, y] : positions_of(43, 60)) {
+      ASSERT_NEAR(hole.map.at(x, y), plane(x, y), 5e-3) << x << ", " << y;
     }
   }
 }
@@ -97,15 +82,13 @@ double plain_energy(SurfaceEnergy energy, const DisparityMap& map, const Mask& r
     }
     sum += is_inside ? weight * value * value : 0;
   };
-  for (int y = 0; y < map.height(); ++y) {
-    for (int x = 0; x < map.width(); ++x) {
-      add(is_plate ? 1e-3 : 1, x, y, {{0, 0, 1}, {1, 0, -1}});
-      add(is_plate ? 1e-3 : 1, x, y, {{0, 0, 1}, {0, 1, -1}});
-      if (is_plate) {
-        add(1, x, y, {{0, 0, 1}, {1, 0, -2}, {2, 0, 1}});
-        add(1, x, y, {{0, 0, 1}, {0, 1, -2}, {0, 2, 1}});
-        add(2, x, y, {{0, 0, 1}, {1, 0, -1}, {0, 1, -1}, {1, 1, 1}});
-      }
+  for (const auto [x, y] : positions_of(map)) {
+    add(is_plate ? 1e-3 : 1, x, y, {{0, 0, 1}, {1, 0, -1}});
+    add(is_plate ? 1e-3 : 1, x, y, {{0, 0, 1}, {0, 1, -1}});
+    if (is_plate) {
+      add(1, x, y, {{0, 0, 1}, {1, 0, -2}, {2, 0, 1}});
+      add(1, x, y, {{0, 0, 1}, {0, 1, -2}, {0, 2, 1}});
+      add(2, x, y, {{0, 0, 1}, {1, 0, -1}, {0, 1, -1}, {1, 1, 1}});
     }
   }
   return sum;
@@ -119,22 +102,20 @@ TEST(CanonicalFill, HasTheLeastEnergy) {
     };
     Hole hole(41, 23, wavy, is_in_region);
     hole.fill(energy);
-    for (int y = 0; y < 23; ++y) {
-      for (int x = 0; x < 41; ++x) {
-        if (hole.region.at(x, y) == 0) {
-          EXPECT_EQ(hole.map.at(x, y), wavy(x, y));
-          continue;
-        }
-        // The derivative of a quadratic function by symmetric differences is exact.
-        float& value = hole.map.at(x, y);
-        const float minimum = value;
-        value = minimum + 0.5F;
-        const double above = plain_energy(energy, hole.map, hole.region);
-        value = minimum - 0.5F;
-        const double below = plain_energy(energy, hole.map, hole.region);
-        value = minimum;
-        ASSERT_NEAR(above - below, 0, 2e-5) << x << ", " << y;
+    for (const auto [x, y] : positions_of(41, 23)) {
+      if (hole.region.at(x, y) == 0) {
+        EXPECT_EQ(hole.map.at(x, y), wavy(x, y));
+        continue;
       }
+      // The derivative of a quadratic function by symmetric differences is exact.
+      float& value = hole.map.at(x, y);
+      const float minimum = value;
+      value = minimum + 0.5F;
+      const double above = plain_energy(energy, hole.map, hole.region);
+      value = minimum - 0.5F;
+      const double below = plain_energy(energy, hole.map, hole.region);
+      value = minimum;
+      ASSERT_NEAR(above - below, 0, 2e-5) << x << ", " << y;
     }
   }
 }
@@ -149,12 +130,9 @@ TEST(CanonicalFill, OfALargeRegionIsAsExact) {
       return x > 2 && x < 137 && y > 3 && y < 109 && (x % 47 != 20 || y % 31 != 11);
     });
     hole.fill(energy);
-    for (int y = 0; y < 113; ++y) {
-      for (int x = 0; x < 141; ++x) {
-        ASSERT_NEAR(hole.map.at(x, y), saddle(x, y),
-                    energy == SurfaceEnergy::kMembrane ? 0.02 : 0.1)
-            << x << ", " << y;
-      }
+    for (const auto [x, y] : positions_of(141, 113)) {
+      ASSERT_NEAR(hole.map.at(x, y), saddle(x, y), energy == SurfaceEnergy::kMembrane ? 0.02 : 0.1)
+          << x << ", " << y;
     }
   }
 }
@@ -178,14 +156,11 @@ TEST(CanonicalFill, LeavesOutEndsOfASurfaceInFront) {
 }
 
 TEST(UniformPixels, TextureIsTheMeanDifferenceOfSomeWindow) {
-  Execution execution({.threads = 2});
   std::mt19937 random(3);
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {17, 9}, {40, 31}}) {
     Image<std::uint8_t> image(width, height);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        image.at(x, y) = static_cast<std::uint8_t>(90 + random() % (x < 2 * width / 3 ? 3 : 40));
-      }
+    for (const auto [x, y] : positions_of(width, height)) {
+      image.at(x, y) = static_cast<std::uint8_t>(90 + random() % (x < 2 * width / 3 ? 3 : 40));
     }
     const auto is_flat = [&](int x, int y) {
       int sum = 0;
@@ -198,24 +173,21 @@ TEST(UniformPixels, TextureIsTheMeanDifferenceOfSomeWindow) {
     };
     UniformPixelsWork work;
     Mask textureless;
-    find_textureless_pixels(Photograph{image.copy()}, 1.0, execution, work, textureless);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        bool expected = false;
-        for (int row = std::max(y - 3, 0); row <= std::min(y + 3, height - 1); ++row) {
-          for (int column = std::max(x - 3, 0); column <= std::min(x + 3, width - 1); ++column) {
-            expected = expected || is_flat(column, row);
-          }
+    find_textureless_pixels(Photograph{image.copy()}, 1.0, execution(), work, textureless);
+    for (const auto [x, y] : positions_of(width, height)) {
+      bool expected = false;
+      for (int row = std::max(y - 3, 0); row <= std::min(y + 3, height - 1); ++row) {
+        for (int column = std::max(x - 3, 0); column <= std::min(x + 3, width - 1); ++column) {
+          expected = expected || is_flat(column, row);
         }
-        ASSERT_EQ(textureless.at(x, y) != 0, expected) << x << ", " << y;
       }
+      ASSERT_EQ(textureless.at(x, y) != 0, expected) << x << ", " << y;
     }
   }
 }
 
 /// Unmatched columns 5 to 19 between a background of 4 and a surface of 12, which hides 8 columns.
 TEST(UniformPixels, HiddenOnesAreNotUniform) {
-  Execution execution({.threads = 1});
   for (const Side side : {Side::kLeft, Side::kRight}) {
     const auto column = [side](int x) { return side == Side::kLeft ? x : 29 - x; };
     DisparityMap map(30, 1);
@@ -226,7 +198,7 @@ TEST(UniformPixels, HiddenOnesAreNotUniform) {
     }
     Mask uniform(30, 1);
     uniform.fill(255);
-    keep_visible_unmatched(map.view(), unmatched, side, 1, execution, uniform);
+    keep_visible_unmatched(map.view(), unmatched, side, 1, execution(), uniform);
     for (int x = 0; x < 30; ++x) {
       EXPECT_EQ(uniform.at(column(x), 0) != 0, x >= 5 && x < 12) << x;
     }
@@ -235,7 +207,7 @@ TEST(UniformPixels, HiddenOnesAreNotUniform) {
       map.at(column(x), 0) = 25;
     }
     uniform.fill(255);
-    keep_visible_unmatched(map.view(), unmatched, side, 1, execution, uniform);
+    keep_visible_unmatched(map.view(), unmatched, side, 1, execution(), uniform);
     for (int x = 0; x < 30; ++x) {
       EXPECT_EQ(uniform.at(column(x), 0), 0) << x;
     }
@@ -254,14 +226,12 @@ TEST(CanonicalFill, OfAUniformWallAroundACard) {
   MatchedMap map{.disparity_px = DisparityMap(kWidth, kHeight),
                  .disparity_y_px = DisparityMap(kWidth, kHeight)};
   std::mt19937 random(5);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const bool is_card = x >= 60 && x < 90 && y >= 30 && y < 70;
-      const bool is_frame = x < 20 || x >= 110 || y < 6 || y >= 84;
-      image.at(x, y) =
-          static_cast<std::uint8_t>(is_card || is_frame ? 40 + random() % 30 : 128 + random() % 2);
-      map.disparity_px.at(x, y) = is_card ? 25 : is_frame ? wall(x, y) : std::nanf("");
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    const bool is_card = x >= 60 && x < 90 && y >= 30 && y < 70;
+    const bool is_frame = x < 20 || x >= 110 || y < 6 || y >= 84;
+    image.at(x, y) =
+        static_cast<std::uint8_t>(is_card || is_frame ? 40 + random() % 30 : 128 + random() % 2);
+    map.disparity_px.at(x, y) = is_card ? 25 : is_frame ? wall(x, y) : std::nanf("");
   }
   const Photograph photograph{std::move(image)};
   const auto worst_px = [&](Fill fill, int threads, MatchedMap& refined) {
@@ -273,14 +243,12 @@ TEST(CanonicalFill, OfAUniformWallAroundACard) {
     RefinementWork work;
     refine_maps(options, {.side = Side::kLeft, .image = &photograph, .map = &refined}, nullptr,
                 execution, work, [](std::string_view) {});
-    EXPECT_TRUE(test::identical(refined.disparity_px, refined.disparity_y_px));
+    EXPECT_TRUE(identical(refined.disparity_px, refined.disparity_y_px));
     EXPECT_EQ(refined.unmatched.at(50, 50), 255);
     float worst = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 20; x < 110; ++x) {
-        if (x < 60 || x >= 90 || y < 30 || y >= 70) {
-          worst = std::max(worst, std::abs(refined.disparity_px.at(x, y) - wall(x, y)));
-        }
+    for (const auto [x, y] : positions_of({20, 110}, {0, kHeight})) {
+      if (x < 60 || x >= 90 || y < 30 || y >= 70) {
+        worst = std::max(worst, std::abs(refined.disparity_px.at(x, y) - wall(x, y)));
       }
     }
     return worst;
@@ -289,10 +257,9 @@ TEST(CanonicalFill, OfAUniformWallAroundACard) {
   MatchedMap on_one_thread;
   EXPECT_LT(worst_px(Fill::kCanonical, 2, refined), 2);
   worst_px(Fill::kCanonical, 1, on_one_thread);
-  EXPECT_TRUE(test::identical(refined.disparity_px, on_one_thread.disparity_px));
+  EXPECT_TRUE(identical(refined.disparity_px, on_one_thread.disparity_px));
   EXPECT_LT(worst_px(Fill::kThinPlate, 2, refined), 2);
   EXPECT_GT(worst_px(Fill::kMedian, 1, refined), 3);
 }
 
-}  // namespace canonical_fill_test
-}  // namespace vantage
+}  // namespace vantage::canonical_fill_test

@@ -1,18 +1,5 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstring>
-#include <iterator>
-#include <memory>
-#include <ostream>
-#include <random>
-#include <span>
-#include <string_view>
-#include <vector>
-
 #include "scheduler/executor.h"
 #include "scheduler/machine.h"
 #include "scheduler/row_stage.h"
@@ -20,10 +7,11 @@
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/strip_plan.h"
 #include "scheduler/whole_image_pipeline.h"
+#include "tests/engine/engine_test.h"
 #include "tests/scheduler/test_stages.h"
 #include "tests/test_sample.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// The cells of an image, [y][x][lane].
 template <typename Cell>
@@ -161,7 +149,7 @@ void run_in_strips(scheduler::Chain chain, const Check& check) {
                                                  make_shuffled_executor(5)};
   constexpr int kStrips[] = {1, 3, 17, kAll};
   constexpr int kBands[] = {1, 5, kAll};
-  for (const test::SampleRow& row : test::sampled_rows(
+  for (const SampleRow& row : sampled_rows(
            {static_cast<int>(splits.size()), static_cast<int>(std::size(kStrips)),
             static_cast<int>(std::size(kBands)), static_cast<int>(std::size(executors))})) {
     PlanRequest request;
@@ -171,7 +159,7 @@ void run_in_strips(scheduler::Chain chain, const Check& check) {
     SCOPED_TRACE(::testing::Message()
                  << "strips of " << *request.strip_columns << ", bands of " << *request.band_rows
                  << ", passes of " << ::testing::PrintToString(*request.pass_ends) << ", "
-                 << test::sample_name());
+                 << sample_name());
     const ChainPlan plan = plan_chain(chain, Machine{}, request);
     ScratchPool pool;
     {
@@ -214,4 +202,4 @@ CellVolume<Output> run_every_way(const CellVolume<float>& input,
   return expected;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,43 +1,31 @@
 // What maps are checked against where the finest level is pruned or searched in windows: smooth
 // tiles have coarse winners.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <cstdlib>
-#include <utility>
 
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
-#include "engine/matching/stereo_matcher.h"
 #include "engine/matching/windows/window_level.h"
 #include "engine/refinement/refinement.h"
 #include "scheduler/whole_image_pipeline.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace check_map_test {
-
-using test::identical;
+namespace vantage::check_map_test {
 
 constexpr int kWidth = 197;
 constexpr int kHeight = 93;
 constexpr DisparityRange kRange{0, 45};
 
 /// A surface before another one, both without slopes: most tiles are smooth.
-test::PhotographPair two_surfaces() {
-  const auto world = test::textured_pair(kWidth + 64, kHeight, {0, 1}, test::PixelKind::kGrey8, 5);
+PhotographPair two_surfaces() {
+  const auto world = textured_pair(kWidth + 64, kHeight, {0, 1}, PixelKind::kGrey8, 5);
   const auto& texture = std::get<Image<std::uint8_t>>(world.left.pixels);
   Image<std::uint8_t> left(kWidth, kHeight);
   Image<std::uint8_t> right(kWidth, kHeight);
   const auto copy = [&](int disparity, int first, int end, int rows) {
-    for (int y = 0; y < rows; ++y) {
-      for (int x = std::max(first, 0); x < std::min(end, kWidth); ++x) {
-        left.at(x, y) = texture.at(x, y);
-        if (x - disparity >= 0) {
-          right.at(x - disparity, y) = texture.at(x, y);
-        }
+    for (const auto [x, y] : positions_of({std::max(first, 0), std::min(end, kWidth)}, {0, rows})) {
+      left.at(x, y) = texture.at(x, y);
+      if (x - disparity >= 0) {
+        right.at(x - disparity, y) = texture.at(x, y);
       }
     }
   };
@@ -66,27 +54,17 @@ MatchOptions options_of(int final_iterations, int window_levels) {
   return options;
 }
 
-DisparityMaps matched(const test::PhotographPair& pair, const MatchOptions& options,
-                      const MatchRequest& request = {},
-                      const ExecutionOptions& how = {.threads = 2}, MatchReport* report = nullptr) {
-  Execution execution(how);
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(pair.left, pair.right, request, maps, report);
-  return maps;
-}
-
 /// The winners of level 1.
-Image<std::int32_t> coarse_winners(const test::PhotographPair& pair, const MatchOptions& options,
+Image<std::int32_t> coarse_winners(const PhotographPair& pair, const MatchOptions& options,
                                    Side reference) {
   const MethodParameters parameters = options.resolved();
-  Execution execution({.threads = 1});
   const bool is_left = reference == Side::kLeft;
   const auto geometry = candidate_geometry(options.in_force(), reference, kWidth, kHeight);
   CostImage left;
   CostImage right;
   const auto margins = window_margins(geometry);
-  left.prepare(pair.left, parameters, margins, {is_left, false, true}, execution);
-  right.prepare(pair.right, parameters, margins, {!is_left, is_left, true}, execution);
+  left.prepare(pair.left, parameters, margins, {is_left, false, true}, execution());
+  right.prepare(pair.right, parameters, margins, {!is_left, is_left, true}, execution());
   DisparityMap size_alone(kWidth, kHeight);
   EdgeWeightLevels edges;
   CoarseLevels levels;
@@ -95,12 +73,12 @@ Image<std::int32_t> coarse_winners(const test::PhotographPair& pair, const Match
                          {CostPartner{is_left ? &right : &left}},
                          {},
                          0,
-                         edges.prepare(is_left ? pair.left : pair.right, parameters, execution)};
+                         edges.prepare(is_left ? pair.left : pair.right, parameters, execution())};
   Image<std::int32_t> winners;
   CoarseToFine({parameters, geometry, input},
                {.outputs = {.disparity_px = size_alone.view()},
                 .coarse = {.level = 1, .winners = &winners, .is_only = true}},
-               levels, execution,
+               levels, execution(),
                [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); })
       .search();
   return winners;
@@ -109,13 +87,12 @@ Image<std::int32_t> coarse_winners(const test::PhotographPair& pair, const Match
 bool is_smooth(const Image<std::int32_t>& winners, int tile_x, int tile_y) {
   const int end_x = std::min(4 * tile_x + 5, winners.width());
   const int end_y = std::min(4 * tile_y + 5, winners.height());
-  for (int y = std::max(4 * tile_y - 1, 0); y < end_y; ++y) {
-    for (int x = std::max(4 * tile_x - 1, 0); x < end_x; ++x) {
-      const int here = winners.at(x, y);
-      if ((x + 1 < end_x && std::abs(winners.at(x + 1, y) - here) > 2) ||
-          (y + 1 < end_y && std::abs(winners.at(x, y + 1) - here) > 2)) {
-        return false;
-      }
+  for (const auto [x, y] :
+       positions_of({std::max(4 * tile_x - 1, 0), end_x}, {std::max(4 * tile_y - 1, 0), end_y})) {
+    const int here = winners.at(x, y);
+    if ((x + 1 < end_x && std::abs(winners.at(x + 1, y) - here) > 2) ||
+        (y + 1 < end_y && std::abs(winners.at(x, y + 1) - here) > 2)) {
+      return false;
     }
   }
   return true;
@@ -136,24 +113,21 @@ TEST(CheckMap, IsTheMapButInSmoothTilesCoarseWinners) {
     MatchOptions raw = options;
     raw.raw = true;
     raw.refinement = {};
-    const DisparityMaps winners = matched(pair, raw);
+    const DisparityMaps winners = maps_of(pair, raw);
     DisparityMap check_px(kWidth, kHeight);
     const Image<std::int32_t> coarse = coarse_winners(pair, raw, Side::kRight);
     int smooth = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const bool is_coarse = of.has_check_map() && is_smooth(coarse, x / 8, y / 8);
-        check_px.at(x, y) = is_coarse ? static_cast<float>(coarse.at(x / 2, y / 2))
-                                      : winners.right.disparity_px.at(x, y);
-        smooth += is_coarse ? 1 : 0;
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      const bool is_coarse = of.has_check_map() && is_smooth(coarse, x / 8, y / 8);
+      check_px.at(x, y) = is_coarse ? static_cast<float>(coarse.at(x / 2, y / 2))
+                                    : winners.right.disparity_px.at(x, y);
+      smooth += is_coarse ? 1 : 0;
     }
     EXPECT_EQ(smooth > kWidth * kHeight / 3, of.has_check_map()) << smooth;
-    Execution execution({.threads = 1});
     Mask expected;
     cross_check(winners.left.disparity_px.view(), std::as_const(check_px).view(), Side::kLeft, 1,
-                execution, expected);
-    EXPECT_TRUE(identical(matched(pair, options).left.unmatched, expected))
+                execution(), expected);
+    EXPECT_TRUE(identical(maps_of(pair, options).left.unmatched, expected))
         << final_iterations << " iterations, " << of.window_levels << " levels of windows";
   }
 }
@@ -163,15 +137,15 @@ TEST(CheckMap, LeavesTilesOutAndChangesNoMap) {
   for (const Case& of : {Case{0, 0}, {1, 0}, {2, 1}, {1, 2}}) {
     const MatchOptions options = options_of(of.final_iterations, of.window_levels);
     MatchReport of_both;
-    const DisparityMaps both = matched(pair, options, {}, {.threads = 1}, &of_both);
+    const DisparityMaps both = maps_of(pair, options, {.threads = 1}, {}, &of_both);
     for (const int strip_px : {23, 1000}) {
       const ExecutionOptions how{.threads = 2, .strip_width_px = strip_px, .band_height_px = 11};
       MatchReport of_left;
       const DisparityMaps left =
-          matched(pair, options, {.left = true, .right = false}, how, &of_left);
+          maps_of(pair, options, how, {.left = true, .right = false}, &of_left);
       EXPECT_TRUE(identical(left.left.disparity_px, both.left.disparity_px));
       EXPECT_TRUE(identical(left.left.unmatched, both.left.unmatched));
-      const DisparityMaps right = matched(pair, options, {.left = false, .right = true}, how);
+      const DisparityMaps right = maps_of(pair, options, how, {.left = false, .right = true});
       EXPECT_TRUE(identical(right.right.disparity_px, both.right.disparity_px));
       EXPECT_TRUE(identical(right.right.unmatched, both.right.unmatched));
       EXPECT_LT(of_left.finest_cells, 0.9 * of_both.finest_cells);
@@ -179,5 +153,4 @@ TEST(CheckMap, LeavesTilesOutAndChangesNoMap) {
   }
 }
 
-}  // namespace check_map_test
-}  // namespace vantage
+}  // namespace vantage::check_map_test

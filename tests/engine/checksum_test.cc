@@ -1,15 +1,10 @@
 #include "engine/io/files/checksum.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace checksum_test {
+namespace vantage::checksum_test {
 
 std::span<const std::uint8_t> bytes_in(const std::string& text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
@@ -36,7 +31,7 @@ TEST(Checksum, IsTheCommonCrc32) {
   }
   EXPECT_EQ(crc32_of(bytes_in(text)), plain_crc32(text));
   const TemporaryFolder folder;
-  test::put_text(folder / "file", text);
+  put_text(folder / "file", text);
   EXPECT_EQ(file_content(folder / "file"), (FileContent{text.size(), plain_crc32(text)}));
   EXPECT_EQ(file_content(folder / "none"), std::nullopt);
   EXPECT_EQ(file_content(folder.path()), std::nullopt);
@@ -65,5 +60,4 @@ TEST(Checksum, OfAnObjectIsItsLastEntry) {
   }
 }
 
-}  // namespace checksum_test
-}  // namespace vantage
+}  // namespace vantage::checksum_test

@@ -3,39 +3,15 @@
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/levels/level_extents.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <iterator>
-#include <limits>
-#include <random>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
 #include "scheduler/whole_image_pipeline.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace coarse_to_fine_test {
+namespace vantage::coarse_to_fine_test {
 
 using scheduler::Extent;
-using test::expect_equals_oracle;
-using test::identical;
-using test::name_of;
-using test::PixelKind;
-using test::plain_match;
-using test::PlainMap;
-using test::StoredCells;
-using test::textured_pair;
-using test::Tolerance;
-using test::tolerance_of;
 
 TEST(LevelExtents, HalveAndRoundUp) {
   const std::vector<Extent> expected = {{37, 29}, {19, 15}, {10, 8}, {5, 4}};
@@ -82,21 +58,12 @@ Tolerance tolerance_with_levels(const MethodParameters& parameters) {
   return tolerance;
 }
 
-DisparityMaps maps_of(const Photograph& left, const Photograph& right, const MatchOptions& options,
-                      MatchReport* report = nullptr) {
-  Execution execution({.threads = 2});
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(left, right, {.confidence = true}, maps, report);
-  return maps;
-}
-
 using Combination = std::tuple<Aggregation, MatchCost>;
 
 class CoarseToFine : public ::testing::TestWithParam<Combination> {};
 
 TEST_P(CoarseToFine, EqualsTheOracle) {
   const auto [aggregation, cost] = GetParam();
-  Execution execution({.threads = 2});
   struct Shape {
     int width;
     int height;
@@ -108,7 +75,7 @@ TEST_P(CoarseToFine, EqualsTheOracle) {
     const auto pair = textured_pair(shape.width, shape.height, shape.range, PixelKind::kGrey8, 3);
     for (const int levels : {2, 4}) {
       const MatchOptions options = options_of(aggregation, cost, levels, shape.range);
-      expect_equals_oracle(pair, options, execution, tolerance_with_levels(options.resolved()),
+      expect_equals_oracle(pair, options, execution(), tolerance_with_levels(options.resolved()),
                            std::to_string(shape.width) + "x" + std::to_string(shape.height) + ", " +
                                std::to_string(levels) + " levels, " +
                                std::to_string(shape.range.count()) + " candidates");
@@ -118,7 +85,6 @@ TEST_P(CoarseToFine, EqualsTheOracle) {
 
 /// Evidence, prior, iterations and weights of neighbours that differ from level to level.
 TEST(CoarseToFineOfEdges, EqualsTheOracle) {
-  Execution execution({.threads = 2});
   struct Shape {
     int width;
     int height;
@@ -149,7 +115,7 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
       {PriorSmoothing::kMaximum, 5e-6, 2, vantage::Prior::kImpulse},
       {PriorSmoothing::kSum, 0.01, 2, vantage::Prior::kQuadratic},
       {PriorSmoothing::kMaximum, 0.01, 0, vantage::Prior::kQuadratic}};
-  for (const test::SampleRow& row : test::sampled_rows({5, 3, std::size(kPriors)})) {
+  for (const SampleRow& row : sampled_rows({5, 3, std::size(kPriors)})) {
     const Shape& shape = kShapes[row[0]];
     const int levels = kLevels[row[1]];
     const Prior& prior = kPriors[row[2]];
@@ -178,14 +144,14 @@ TEST(CoarseToFineOfEdges, EqualsTheOracle) {
     if (prior.final_iterations == 0) {
       tolerance.tie = 0.1;  // what is chosen from are bytes, of 0.09 nat each
     }
-    expect_equals_oracle(pair, options, execution, tolerance,
+    expect_equals_oracle(pair, options, execution(), tolerance,
                          std::to_string(shape.width) + "x" + std::to_string(shape.height) + ", " +
                              std::to_string(levels) + " levels, " +
                              (prior.smoothing == PriorSmoothing::kSum ? "sum" : "maximum") +
                              " of prior " + std::to_string(static_cast<int>(prior.shape)) +
                              ", epsilon " + std::to_string(prior.epsilon) + ", " +
                              std::to_string(prior.final_iterations) + " final iterations, " +
-                             test::sample_name());
+                             sample_name());
   }
 }
 
@@ -215,24 +181,23 @@ TEST_P(CoarseToFine, WholeImageExecutorGivesTheSame) {
   MatchOptions options = options_of(aggregation, cost, 4, range);
   options.raw = true;
   const MethodParameters parameters = options.resolved();
-  Execution execution({.threads = 2});
   const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, 37, 29);
   CostImage left;
   CostImage right;
-  left.prepare(pair.left, parameters, geometry, {true, false, false}, execution);
-  right.prepare(pair.right, parameters, geometry, {false, true, false}, execution);
+  left.prepare(pair.left, parameters, geometry, {true, false, false}, execution());
+  right.prepare(pair.right, parameters, geometry, {false, true, false}, execution());
   DisparityMap map(37, 29);
   CoarseLevels levels;
   int chains = 0;
   vantage::CoarseToFine({parameters, geometry, {nullptr, &left, {CostPartner{&right}}}},
-                        {.outputs = {.disparity_px = map.view()}}, levels, execution,
+                        {.outputs = {.disparity_px = map.view()}}, levels, execution(),
                         [&](const MatchChain& chain) {
                           scheduler::run_whole_image(chain.stages());
                           ++chains;
                         })
       .search();
   EXPECT_EQ(chains, 1 + 4);
-  EXPECT_TRUE(identical(map, maps_of(pair.left, pair.right, options).left.disparity_px));
+  EXPECT_TRUE(identical(map, maps_of(pair, options).left.disparity_px));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -250,13 +215,13 @@ INSTANTIATE_TEST_SUITE_P(
                       Combination{Aggregation::kGaussian, MatchCost::kTruncated},
                       Combination{Aggregation::kBoxCascade, MatchCost::kGradient}),
     [](const auto& instance) {
-      return name_of(std::get<Aggregation>(instance.param)) + "_" +
-             name_of(std::get<MatchCost>(instance.param));
+      return case_name(std::get<Aggregation>(instance.param)) + "_" +
+             case_name(std::get<MatchCost>(instance.param));
     });
 
 /// A surface of little texture at disparity 6, with noise that hides it from single pixels and
 /// their next neighbours.
-std::pair<Photograph, Photograph> weakly_textured_pair(int width, int height, int disparity_px) {
+PhotographPair weakly_textured_pair(int width, int height, int disparity_px) {
   std::mt19937 random(5);
   const auto noise = [&] { return static_cast<int>(random() % 13) - 6; };
   const int wide = width + disparity_px;
@@ -281,18 +246,16 @@ std::pair<Photograph, Photograph> weakly_textured_pair(int width, int height, in
 
 TEST(CoarseToFineMatcher, FindsWhatOnlyLargeRegionsTell) {
   constexpr int kDisparity = 6;
-  const auto [left, right] = weakly_textured_pair(120, 90, kDisparity);
+  const auto pair = weakly_textured_pair(120, 90, kDisparity);
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 1, {0, 15});
   options.raw = true;
   const auto wrong = [&](int levels, int iterations) {
     options.parameters.levels = levels;
     options.parameters.iterations = iterations;
-    const DisparityMaps maps = maps_of(left, right, options);
+    const DisparityMaps maps = maps_of(pair, options);
     int count = 0;
-    for (int y = 0; y < 90; ++y) {
-      for (int x = 15; x < 120; ++x) {
-        count += maps.left.disparity_px.at(x, y) != kDisparity ? 1 : 0;
-      }
+    for (const auto [x, y] : positions_of({15, 120}, {0, 90})) {
+      count += maps.left.disparity_px.at(x, y) != kDisparity ? 1 : 0;
     }
     return count;
   };
@@ -305,9 +268,9 @@ TEST(CoarseToFineMatcher, FindsWhatOnlyLargeRegionsTell) {
 TEST(CoarseToFineMatcher, OneLevelIsFlat) {
   const auto pair = textured_pair(2, 2, {0, 1}, PixelKind::kGrey8, 3);
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 1, {0, 1});
-  const DisparityMaps flat = maps_of(pair.left, pair.right, options);
+  const DisparityMaps flat = maps_of(pair, options);
   options.parameters.levels = 7;  // of which an image of 2×2 pixels has one
-  EXPECT_TRUE(identical(maps_of(pair.left, pair.right, options), flat));
+  EXPECT_TRUE(identical(maps_of(pair, options), flat));
 }
 
 TEST(CoarseToFineMatcher, CountsTheCellsOfAllLevels) {
@@ -315,50 +278,40 @@ TEST(CoarseToFineMatcher, CountsTheCellsOfAllLevels) {
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 3, {0, 9});
   options.raw = true;
   MatchReport report;
-  maps_of(pair.left, pair.right, options, &report);
+  maps_of(pair, options, {.threads = 2}, {.confidence = true}, &report);
   EXPECT_EQ(report.cells, 2.0 * 10 * (37 * 29 + 19 * 15 + 10 * 8));
 }
 
 TEST(CoarseToFineMatcher, KeepsItsWorkingMemoryFromPairToPair) {
-  Execution execution({.threads = 2});
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 4, {0, 9});
-  const StereoMatcher matcher(options, execution);
+  const StereoMatcher matcher(options, execution());
   const auto large = textured_pair(37, 29, {0, 9}, PixelKind::kGrey8, 3);
   const auto small = textured_pair(21, 31, {0, 9}, PixelKind::kGrey8, 4);
   DisparityMaps maps;
   for (const auto* pair : {&large, &small, &large}) {
     matcher.match(pair->left, pair->right, {.confidence = true}, maps);
-    EXPECT_TRUE(identical(maps, maps_of(pair->left, pair->right, options)));
+    EXPECT_TRUE(identical(maps, maps_of(*pair, options)));
   }
 }
 
 TEST(CoarseToFineMatcher, SeveralImagesGoToo) {
-  Execution execution({.threads = 2});
   const auto pair = textured_pair(37, 29, {0, 9}, PixelKind::kGrey8, 3);
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 3, {0, 9});
   options.raw = true;
   DisparityMaps of_one;
   const OtherView other{&pair.right, 1};
-  StereoMatcher(options, execution).match_several(pair.left, {&other, 1}, {}, of_one);
-  EXPECT_TRUE(identical(of_one.left.disparity_px,
-                        maps_of(pair.left, pair.right, options).left.disparity_px));
+  StereoMatcher(options, execution()).match_several(pair.left, {&other, 1}, {}, of_one);
+  EXPECT_TRUE(identical(of_one.left.disparity_px, maps_of(pair, options).left.disparity_px));
 }
 
 TEST(CoarseToFineMatcher, PruningOfVerticalSearchIsRefused) {
-  Execution execution({.threads = 1});
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 3, {0, 9});
   options.disparities_y = DisparityRange{-1, 1};
   options.parameters.prior_smoothing = PriorSmoothing::kMaximum;
   options.parameters.candidate_blocks = 2;
-  try {
-    const StereoMatcher matcher(options, execution);
-    FAIL() << "no error";
-  } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(),
-                 "candidate-blocks is 2, expected 0 with disparities-y: blocks are of candidates "
-                 "along rows");
-  }
+  EXPECT_EQ(error_of([&] { const StereoMatcher matcher(options, execution()); }),
+            "candidate-blocks is 2, expected 0 with disparities-y: blocks are of candidates along "
+            "rows");
 }
 
-}  // namespace coarse_to_fine_test
-}  // namespace vantage
+}  // namespace vantage::coarse_to_fine_test

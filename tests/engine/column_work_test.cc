@@ -1,26 +1,15 @@
 // What stages tell profiles about their work.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/chain/match_chain.h"
 #include "engine/matching/levels/level_stages.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace column_work_test {
+namespace vantage::column_work_test {
 
 using scheduler::ColumnWork;
-using test::method_cases;
-using test::MethodCase;
-using test::PixelKind;
-using test::textured_pair;
 
 constexpr int kWidth = 57;
 constexpr int kHeight = 39;
@@ -47,7 +36,6 @@ std::vector<StageWork> works_of(const MatchOptions& method, const ChainCase& mad
   MatchOptions options = method;
   options.disparities = kRange;
   const MethodParameters parameters = options.resolved();
-  Execution execution({.threads = 1});
   const auto photographs = textured_pair(kWidth, kHeight, kRange, made.pixels, 3);
   const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, kWidth, kHeight);
   PreparedPair pair;
@@ -58,11 +46,11 @@ std::vector<StageWork> works_of(const MatchOptions& method, const ChainCase& mad
   const bool is_plain = !made.has_prior && made.baseline_ratios.size() == 1;
   if (is_plain && uses_column_ssd(parameters)) {
     pair.prepare(photographs.left, photographs.right, geometry,
-                 parameters.window_px * parameters.window_px, {true, false}, execution);
+                 parameters.window_px * parameters.window_px, {true, false}, execution());
     input.pair = &pair;
   } else {
-    reference.prepare(photographs.left, parameters, geometry, {true, false, false}, execution);
-    partner.prepare(photographs.right, parameters, geometry, {false, true, true}, execution);
+    reference.prepare(photographs.left, parameters, geometry, {true, false, false}, execution());
+    partner.prepare(photographs.right, parameters, geometry, {false, true, true}, execution());
     input.reference = &reference;
     for (const double ratio : made.baseline_ratios) {
       input.partners.push_back({&partner, ratio});
@@ -188,5 +176,4 @@ TEST(ColumnWork, GrowsWithWhatIsAskedFor) {
   EXPECT_GT(iteration_operations(0.4), iteration_operations(0.1));
 }
 
-}  // namespace column_work_test
-}  // namespace vantage
+}  // namespace vantage::column_work_test

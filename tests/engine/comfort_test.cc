@@ -1,17 +1,11 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <string>
 
 #include "engine/comfort/comfort_summary.h"
 #include "engine/comfort/frame_comfort.h"
 #include "engine/comfort/image_order.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace comfort_test {
+namespace vantage::comfort_test {
 
 constexpr int kWidth = 200;
 constexpr int kHeight = 20;
@@ -33,14 +27,12 @@ MatchedMap map_of(float disparity_px) {
 
 TEST(FrameComfort, CountsMatchedPixelsOnly) {
   MatchedMap map = map_of(-2);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      map.disparity_px.at(x, y) = x < 50    ? std::numeric_limits<float>::quiet_NaN()
-                                  : x < 60  ? 100.0F  // unmatched
-                                  : x < 130 ? 1.5F
-                                            : -2.0F;
-      map.unmatched.at(x, y) = x >= 50 && x < 60 ? 255 : 0;
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    map.disparity_px.at(x, y) = x < 50    ? std::numeric_limits<float>::quiet_NaN()
+                                : x < 60  ? 100.0F  // unmatched
+                                : x < 130 ? 1.5F
+                                          : -2.0F;
+    map.unmatched.at(x, y) = x >= 50 && x < 60 ? 255 : 0;
   }
   const FrameComfort comfort = measure_comfort(grey_image(90), grey_image(80), map, Side::kLeft);
   EXPECT_EQ(comfort.matched, 7000);
@@ -83,14 +75,12 @@ TEST(FrameComfort, ABorderCutsWhatIsInFrontAndTouchesItForTheOtherEye) {
 OrderVotes votes_with(int hidden_level) {
   Image<std::uint8_t> image(kWidth, kHeight);
   MatchedMap map = map_of(2);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const bool is_near = x >= 80 && x < 120;
-      const bool is_hidden = x >= 70 && x < 80;
-      image.at(x, y) = static_cast<std::uint8_t>(is_hidden ? hidden_level : is_near ? 200 : 50);
-      map.disparity_px.at(x, y) = is_near ? 12 : 2;
-      map.unmatched.at(x, y) = is_hidden ? 255 : 0;
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    const bool is_near = x >= 80 && x < 120;
+    const bool is_hidden = x >= 70 && x < 80;
+    image.at(x, y) = static_cast<std::uint8_t>(is_hidden ? hidden_level : is_near ? 200 : 50);
+    map.disparity_px.at(x, y) = is_near ? 12 : 2;
+    map.unmatched.at(x, y) = is_hidden ? 255 : 0;
   }
   return order_of_images(Photograph{std::move(image)}, map, Side::kLeft);
 }
@@ -143,5 +133,4 @@ TEST(ComfortSummary, ManyWrongPlacesAreExchangedImages) {
   EXPECT_FALSE(summarise_comfort({{0, frame}}, {{0, 1}}).film.exchanged);
 }
 
-}  // namespace comfort_test
-}  // namespace vantage
+}  // namespace vantage::comfort_test

@@ -1,23 +1,10 @@
 #include "engine/sequence/commit_queue.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace commit_queue_test {
+namespace vantage::commit_queue_test {
 
 namespace fs = std::filesystem;
-using test::error_of;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 class CommitQueueTest : public testing::Test {
  protected:
@@ -129,5 +116,4 @@ TEST_F(CommitQueueTest, WhatWasPushedIsDeliveredWhenTheQueueGoes) {
   EXPECT_THAT(journalled(), ElementsAre(3));
 }
 
-}  // namespace commit_queue_test
-}  // namespace vantage
+}  // namespace vantage::commit_queue_test

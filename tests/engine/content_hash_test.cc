@@ -1,20 +1,15 @@
 #include "engine/image/content_hash.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <set>
-
-namespace vantage {
-namespace content_hash_test {
+namespace vantage::content_hash_test {
 
 template <typename T>
 Photograph gradient(int width, int height, int channels) {
   Image<T> image(width, height, channels);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < channels; ++c) {
-        image.at(x, y, c) = static_cast<T>(7 * x + 3 * y + c);
-      }
+  for (const auto [x, y] : positions_of(width, height)) {
+    for (int c = 0; c < channels; ++c) {
+      image.at(x, y, c) = static_cast<T>(7 * x + 3 * y + c);
     }
   }
   return {std::move(image)};
@@ -25,11 +20,9 @@ TEST(ContentHash, EqualPicturesHaveEqualHashesWhateverTheirMemory) {
   reused.resize(31, 17, 3);
   const Photograph small = gradient<std::uint8_t>(31, 17, 3);
   const auto& pixels = std::get<Image<std::uint8_t>>(small.pixels);
-  for (int y = 0; y < 17; ++y) {
-    for (int x = 0; x < 31; ++x) {
-      for (int c = 0; c < 3; ++c) {
-        reused.at(x, y, c) = pixels.at(x, y, c);
-      }
+  for (const auto [x, y] : positions_of(31, 17)) {
+    for (int c = 0; c < 3; ++c) {
+      reused.at(x, y, c) = pixels.at(x, y, c);
     }
   }
   EXPECT_EQ(content_hash({std::move(reused)}), content_hash(small));
@@ -46,13 +39,11 @@ TEST(ContentHash, EveryPixelAndTheShapeCount) {
     Photograph picture = gradient<std::uint8_t>(width, 3, 1);
     add(picture);
     auto& pixels = std::get<Image<std::uint8_t>>(picture.pixels);
-    for (int y = 0; y < 3; ++y) {
-      for (int x = 0; x < width; ++x) {
-        for (const int change : {1, 128}) {
-          pixels.at(x, y) = static_cast<std::uint8_t>(pixels.at(x, y) ^ change);
-          add(picture);
-          pixels.at(x, y) = static_cast<std::uint8_t>(pixels.at(x, y) ^ change);
-        }
+    for (const auto [x, y] : positions_of(width, 3)) {
+      for (const int change : {1, 128}) {
+        pixels.at(x, y) = static_cast<std::uint8_t>(pixels.at(x, y) ^ change);
+        add(picture);
+        pixels.at(x, y) = static_cast<std::uint8_t>(pixels.at(x, y) ^ change);
       }
     }
   }
@@ -76,5 +67,4 @@ TEST(ContentHash, SwappedPixelsAndRowsDiffer) {
   EXPECT_NE(content_hash(picture), before);
 }
 
-}  // namespace content_hash_test
-}  // namespace vantage
+}  // namespace vantage::content_hash_test

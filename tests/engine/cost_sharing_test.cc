@@ -1,18 +1,11 @@
 // Costs of coarse levels that are made once for both images: maps are those of each image alone.
-#include <gtest/gtest.h>
-
-#include <string>
-#include <tuple>
 
 #include "engine/matching/chain/match_chain.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace cost_sharing_test {
-
-using test::identical;
+namespace vantage::cost_sharing_test {
 
 MatchOptions options_of(DisparityRange range) {
   MatchOptions options;
@@ -28,7 +21,7 @@ MatchOptions options_of(DisparityRange range) {
   return options;
 }
 
-DisparityMaps matched(const test::PhotographPair& pair, const MatchOptions& options,
+DisparityMaps matched(const PhotographPair& pair, const MatchOptions& options,
                       const MatchRequest& request, const ExecutionOptions& how) {
   Execution execution(how);
   const StereoMatcher matcher(options, execution);
@@ -42,7 +35,7 @@ TEST(CostSharing, MapsAreThoseOfEachImageAlone) {
   for (const auto& [width, height, range] :
        {std::tuple{64, 31, DisparityRange{0, 20}}, std::tuple{75, 20, DisparityRange{-7, 9}},
         std::tuple{33, 9, DisparityRange{-70, 70}}, std::tuple{130, 17, DisparityRange{21, 60}}}) {
-    const auto pair = test::textured_pair(width, height, range, test::PixelKind::kGrey8, 3);
+    const auto pair = textured_pair(width, height, range, PixelKind::kGrey8, 3);
     for (const SearchSize size : {SearchSize::kFull, SearchSize::kHalf}) {
       MatchOptions options = options_of(range);
       options.parameters.search_size = size;
@@ -69,5 +62,4 @@ TEST(CostSharing, IsForByteCostsOfOnePartnerAndImagesThatAreNotLarge) {
   EXPECT_FALSE(can_share_costs(parameters, {640, 480}, 64));
 }
 
-}  // namespace cost_sharing_test
-}  // namespace vantage
+}  // namespace vantage::cost_sharing_test

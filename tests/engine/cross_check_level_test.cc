@@ -1,26 +1,14 @@
 // Maps that are checked against a coarse level of the other image's.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <array>
-#include <string>
-#include <utility>
-
-#include "engine/error.h"
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/refinement/refinement.h"
 #include "scheduler/whole_image_pipeline.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace cross_check_level_test {
-
-using test::identical;
-using test::PixelKind;
-using test::textured_pair;
+namespace vantage::cross_check_level_test {
 
 constexpr DisparityRange kRange{-3, 37};  // three blocks of candidates
 
@@ -45,18 +33,17 @@ struct BothMaps {
   DisparityMap coarse;
 };
 
-BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, Side reference,
-                 int level, bool is_only) {
+BothMaps both_maps_of(const PhotographPair& pair, const MatchOptions& options, Side reference,
+                      int level, bool is_only) {
   const MethodParameters parameters = options.resolved();
-  Execution execution({.threads = 2});
   const bool is_left = reference == Side::kLeft;
   const Photograph& own = is_left ? pair.left : pair.right;
   const auto geometry =
       candidate_geometry(options.in_force(), reference, own.width(), own.height());
   CostImage left;
   CostImage right;
-  left.prepare(pair.left, parameters, geometry, {is_left, false, !is_left}, execution);
-  right.prepare(pair.right, parameters, geometry, {!is_left, is_left, false}, execution);
+  left.prepare(pair.left, parameters, geometry, {is_left, false, !is_left}, execution());
+  right.prepare(pair.right, parameters, geometry, {!is_left, is_left, false}, execution());
   BothMaps maps{DisparityMap(own.width(), own.height()), DisparityMap(own.width(), own.height())};
   maps.whole.fill(-99);
   EdgeWeightLevels edges;
@@ -66,12 +53,12 @@ BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, 
                          {CostPartner{is_left ? &right : &left}},
                          {},
                          0,
-                         edges.prepare(own, parameters, execution)};
+                         edges.prepare(own, parameters, execution())};
   Image<std::int32_t> winners;
   CoarseToFine({parameters, geometry, input},
                {.outputs = {.disparity_px = maps.whole.view()},
                 .coarse = {.level = level, .winners = &winners, .is_only = is_only}},
-               levels, execution,
+               levels, execution(),
                [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); })
       .search();
   for (int y = 0; level > 0 && y < own.height(); ++y) {
@@ -80,15 +67,6 @@ BothMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options, 
           static_cast<float>(winners.at(x >> level, y >> level) + geometry.disparity_min);
     }
   }
-  return maps;
-}
-
-DisparityMaps matched(const test::PhotographPair& pair, const MatchOptions& options,
-                      const MatchRequest& request = {}, int threads = 2,
-                      MatchReport* report = nullptr) {
-  Execution execution({.threads = threads});
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(pair.left, pair.right, request, maps, report);
   return maps;
 }
 
@@ -109,11 +87,11 @@ class CrossCheckLevel : public ::testing::TestWithParam<Kind> {
 TEST_P(CrossCheckLevel, CoarseMapsDoNotDependOnFinerLevels) {
   const auto pair = textured_pair(61, 47, kRange, PixelKind::kColour8, 3);
   for (const Side reference : {Side::kLeft, Side::kRight}) {
-    const DisparityMap whole = maps_of(pair, options(), reference, 0, false).whole;
+    const DisparityMap whole = both_maps_of(pair, options(), reference, 0, false).whole;
     for (const int level : {1, 2, 3}) {
-      const BothMaps both = maps_of(pair, options(), reference, level, false);
+      const BothMaps both = both_maps_of(pair, options(), reference, level, false);
       EXPECT_TRUE(identical(both.whole, whole)) << level;
-      const BothMaps alone = maps_of(pair, options(), reference, level, true);
+      const BothMaps alone = both_maps_of(pair, options(), reference, level, true);
       EXPECT_TRUE(identical(alone.coarse, both.coarse)) << level;
       EXPECT_EQ(alone.whole.at(60, 46), -99) << level << ": finer levels were made";
     }
@@ -126,20 +104,16 @@ TEST_P(CrossCheckLevel, CoarseMapsShowTheScene) {
   constexpr int kDisparity = 11;
   const auto world = textured_pair(97 + kDisparity, 64, {0, 1}, PixelKind::kGrey8, 5);
   const auto& texture = std::get<Image<std::uint8_t>>(world.left.pixels);
-  for (int y = 0; y < 64; ++y) {
-    for (int x = 0; x < 97; ++x) {
-      left.at(x, y) = texture.at(x, y);
-      right.at(x, y) = texture.at(x + kDisparity, y);
-    }
+  for (const auto [x, y] : positions_of(97, 64)) {
+    left.at(x, y) = texture.at(x, y);
+    right.at(x, y) = texture.at(x + kDisparity, y);
   }
-  const test::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
+  const PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
   for (const int level : {1, 2}) {
-    const DisparityMap map = maps_of(pair, options(), Side::kRight, level, true).coarse;
+    const DisparityMap map = both_maps_of(pair, options(), Side::kRight, level, true).coarse;
     int wrong = 0;
-    for (int y = 0; y < 64; ++y) {
-      for (int x = 0; x < 97 - kDisparity; ++x) {
-        wrong += map.at(x, y) != kDisparity ? 1 : 0;
-      }
+    for (const auto [x, y] : positions_of(97 - kDisparity, 64)) {
+      wrong += map.at(x, y) != kDisparity ? 1 : 0;
     }
     EXPECT_LT(wrong, 64 * 86 / 50) << level;
   }
@@ -154,21 +128,20 @@ TEST_P(CrossCheckLevel, MapsAreCheckedAgainstIt) {
     MatchOptions raw = options();
     raw.raw = true;
     raw.refinement = {};
-    const DisparityMaps winners = matched(pair, raw);
-    const DisparityMaps maps = matched(pair, checked);
-    Execution execution({.threads = 1});
+    const DisparityMaps winners = maps_of(pair, raw);
+    const DisparityMaps maps = maps_of(pair, checked);
     Mask left;
     Mask right;
     cross_check(winners.left.disparity_px.view(),
-                maps_of(pair, raw, Side::kRight, level, true).coarse.view(), Side::kLeft, 1,
-                execution, left);
+                both_maps_of(pair, raw, Side::kRight, level, true).coarse.view(), Side::kLeft, 1,
+                execution(), left);
     cross_check(winners.right.disparity_px.view(),
-                maps_of(pair, raw, Side::kLeft, level, true).coarse.view(), Side::kRight, 1,
-                execution, right);
+                both_maps_of(pair, raw, Side::kLeft, level, true).coarse.view(), Side::kRight, 1,
+                execution(), right);
     EXPECT_TRUE(identical(maps.left.unmatched, left)) << level;
     EXPECT_TRUE(identical(maps.right.unmatched, right)) << level;
     MatchOptions whole = options();
-    EXPECT_FALSE(identical(maps.left.unmatched, matched(pair, whole).left.unmatched)) << level;
+    EXPECT_FALSE(identical(maps.left.unmatched, maps_of(pair, whole).left.unmatched)) << level;
   }
 }
 
@@ -179,16 +152,16 @@ TEST_P(CrossCheckLevel, MapsDoNotDependOnWhichAreWanted) {
   options.refinement.surface_fit_px = 4;
   options.refinement.edge_snapping_px = 2;
   options.refinement.fill = Fill::kMedian;
-  const DisparityMaps both = matched(pair, options, {.confidence = true}, 1);
+  const DisparityMaps both = maps_of(pair, options, {.threads = 1}, {.confidence = true});
   for (const int threads : {1, 3}) {
-    const DisparityMaps left =
-        matched(pair, options, {.left = true, .right = false, .confidence = true}, threads);
+    const DisparityMaps left = maps_of(pair, options, {.threads = threads},
+                                       {.left = true, .right = false, .confidence = true});
     EXPECT_TRUE(identical(left.left.disparity_px, both.left.disparity_px));
     EXPECT_TRUE(identical(left.left.unmatched, both.left.unmatched));
     EXPECT_TRUE(identical(left.left.confidence, both.left.confidence));
     EXPECT_TRUE(left.right.disparity_px.width() == 0);
-    const DisparityMaps right =
-        matched(pair, options, {.left = false, .right = true, .confidence = true}, threads);
+    const DisparityMaps right = maps_of(pair, options, {.threads = threads},
+                                        {.left = false, .right = true, .confidence = true});
     EXPECT_TRUE(identical(right.right.disparity_px, both.right.disparity_px));
     EXPECT_TRUE(identical(right.right.unmatched, both.right.unmatched));
     EXPECT_TRUE(identical(right.right.confidence, both.right.confidence));
@@ -201,13 +174,15 @@ TEST_P(CrossCheckLevel, OfTooFewLevelsItIsTheCoarsest) {
   MatchOptions options = this->options(2);
   options.disparities = {0, 4};
   options.refinement.cross_check_level = 1;
-  const DisparityMaps maps = matched(pair, options);
+  const DisparityMaps maps = maps_of(pair, options);
   options.refinement.cross_check_level = 9;
-  EXPECT_TRUE(identical(matched(pair, options), maps));
+  EXPECT_TRUE(identical(maps_of(pair, options), maps));
   // A single level: the maps themselves.
   const auto pixel = textured_pair(1, 1, {0, 0}, PixelKind::kGrey8, 3);
   options.disparities = {0, 0};
-  EXPECT_EQ(matched(pixel, options, {.left = true, .right = false}).left.unmatched.at(0, 0), 0);
+  EXPECT_EQ(maps_of(pixel, options, {.threads = 2}, {.left = true, .right = false})
+                .left.unmatched.at(0, 0),
+            0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, CrossCheckLevel,
@@ -224,14 +199,9 @@ TEST(CrossCheckLevelOption, IsForLevelsOfBayesianDiffusion) {
   EXPECT_EQ(options.resolved_refinement().cross_check_level, 0);
   options.validate();
   options.refinement.cross_check_level = 2;
-  try {
-    options.validate();
-    FAIL() << "no error";
-  } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(),
-                 "cross-check-level is 2, expected 0: only aggregation bayes with levels above 1 "
-                 "and selection winner has maps of coarse levels");
-  }
+  EXPECT_EQ(error_of([&] { options.validate(); }),
+            "cross-check-level is 2, expected 0: only aggregation bayes with levels above 1 and "
+            "selection winner has maps of coarse levels");
 }
 
 TEST(CrossCheckLevelOption, SavesTheOtherMapsFinestLevel) {
@@ -239,10 +209,10 @@ TEST(CrossCheckLevelOption, SavesTheOtherMapsFinestLevel) {
   MatchOptions options = options_of(PriorSmoothing::kMaximum, 0);
   const MatchRequest left_only{.left = true, .right = false};
   MatchReport whole;
-  matched(pair, options, left_only, 2, &whole);
+  maps_of(pair, options, {.threads = 2}, left_only, &whole);
   options.refinement.cross_check_level = 1;
   MatchReport coarse;
-  matched(pair, options, left_only, 2, &coarse);
+  maps_of(pair, options, {.threads = 2}, left_only, &coarse);
   EXPECT_EQ(whole.finest_pixels, 2 * 64 * 48);
   EXPECT_EQ(coarse.finest_pixels, 64 * 48);
   EXPECT_EQ(coarse.finest_cells, 64 * 48 * kRange.count());
@@ -254,9 +224,8 @@ TEST(CrossCheckLevelOption, SavesTheOtherMapsFinestLevel) {
   options.refinement.cross_check = false;
   options.refinement.cross_check_px.reset();
   MatchReport unchecked;
-  matched(pair, options, left_only, 2, &unchecked);
+  maps_of(pair, options, {.threads = 2}, left_only, &unchecked);
   EXPECT_EQ(unchecked.cells * 2, whole.cells);
 }
 
-}  // namespace cross_check_level_test
-}  // namespace vantage
+}  // namespace vantage::cross_check_level_test

@@ -1,21 +1,10 @@
 #include "engine/evaluation/cumulative_response.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdint>
-#include <cstdlib>
-#include <utility>
-#include <vector>
-
 #include "engine/generation/portable_random.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_costs.h"
 
-namespace vantage {
-namespace cumulative_response_test {
-
-using ::testing::HasSubstr;
+namespace vantage::cumulative_response_test {
 
 constexpr ImagePart kParts[] = {ImagePart::kWhole, ImagePart::kTopLeft, ImagePart::kTopRight,
                                 ImagePart::kBottomLeft, ImagePart::kBottomRight};
@@ -35,12 +24,10 @@ Photograph texture_at(int x_begin, int y_begin, int width, int height) {
     return values[wrap(y) * kPeriod + wrap(x)];
   };
   Image<std::uint8_t> image(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const int u = x + x_begin;
-      const int v = y + y_begin;
-      image.at(x, y) = static_cast<std::uint8_t>((2 * at(u, v) + at(u + 1, v) + at(u, v + 1)) / 4);
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    const int u = x + x_begin;
+    const int v = y + y_begin;
+    image.at(x, y) = static_cast<std::uint8_t>((2 * at(u, v) + at(u + 1, v) + at(u, v + 1)) / 4);
   }
   return {std::move(image)};
 }
@@ -54,11 +41,11 @@ struct PlainSums {
 PlainSums plain_sums(const Photograph& left, const Photograph& right,
                      const MethodParameters& parameters, Displacement displacement) {
   const auto gradient = [&](const Photograph& image) {
-    return test::gradient_of(test::planes_of(image, ColourUse::kLuma)[0], parameters.gradient,
-                             parameters.prefilter);
+    return gradient_of(planes_of(image, ColourUse::kLuma)[0], parameters.gradient,
+                       parameters.prefilter);
   };
-  const test::Gradient of_left = gradient(left);
-  const test::Gradient of_right = gradient(right);
+  const Gradient of_left = gradient(left);
+  const Gradient of_right = gradient(right);
   PlainSums sums;
   for (int y = 0; y < left.height(); ++y) {
     for (int x = 0; x < left.width(); ++x) {
@@ -72,7 +59,7 @@ PlainSums plain_sums(const Photograph& left, const Photograph& right,
       const double ly = of_left.y.at(x, y);
       const double rx = of_right.x.at(partner_x, partner_y);
       const double ry = of_right.y.at(partner_x, partner_y);
-      const auto length = [&](double a, double b) { return test::length_of(a, b, parameters); };
+      const auto length = [&](double a, double b) { return length_of(a, b, parameters); };
       const double evidence =
           (length(lx, ly) + length(rx, ry)) / 2 - parameters.alpha * length(lx - rx, ly - ry);
       sums.whole += evidence;
@@ -84,8 +71,7 @@ PlainSums plain_sums(const Photograph& left, const Photograph& right,
 
 void expect_equals_equations(const Photograph& left, const Photograph& right,
                              const CumulativeResponseOptions& options) {
-  Execution execution({.threads = 2});
-  const CumulativeResponse response = cumulative_response(left, right, options, execution);
+  const CumulativeResponse response = cumulative_response(left, right, options, execution());
   const double bound = 1e-3 * left.width() * left.height();
   for (int dy = options.displacements_y.min; dy <= options.displacements_y.max; ++dy) {
     for (int dx = options.displacements_x.min; dx <= options.displacements_x.max; ++dx) {
@@ -110,14 +96,14 @@ TEST(CumulativeResponse, EqualsTheEquationsForAwkwardSizes) {
     CumulativeResponseOptions options;
     options.displacements_x = {-3, 4};
     options.displacements_y = {-2, 1};
-    expect_equals_equations(test::noise<std::uint8_t>(width, height, 1, 1),
-                            test::noise<std::uint8_t>(width, height, 1, 2), options);
+    expect_equals_equations(noise<std::uint8_t>(width, height, 1, 1),
+                            noise<std::uint8_t>(width, height, 1, 2), options);
   }
 }
 
 TEST(CumulativeResponse, EqualsTheEquationsForAllParameters) {
-  const Photograph left = test::noise<float>(29, 13, 3, 1);
-  const Photograph right = test::noise<float>(29, 13, 3, 2);
+  const Photograph left = noise<float>(29, 13, 3, 1);
+  const Photograph right = noise<float>(29, 13, 3, 2);
   for (const GradientFilter filter :
        {GradientFilter::kCentral, GradientFilter::kSobel, GradientFilter::kSimoncelli3,
         GradientFilter::kSimoncelli5, GradientFilter::kForward}) {
@@ -140,9 +126,8 @@ TEST(CumulativeResponse, DisplacementsBeyondTheImageCountNothing) {
   CumulativeResponseOptions options;
   options.displacements_x = {-12, 12};
   options.displacements_y = {-9, 9};
-  const Photograph left = test::noise<std::uint8_t>(10, 7, 1, 1);
-  Execution execution({.threads = 1});
-  const CumulativeResponse response = cumulative_response(left, left, options, execution);
+  const Photograph left = noise<std::uint8_t>(10, 7, 1, 1);
+  const CumulativeResponse response = cumulative_response(left, left, options, execution());
   for (const ImagePart part : kParts) {
     EXPECT_EQ(response.at(part, {10, 0}), 0);
     EXPECT_EQ(response.at(part, {-10, 0}), 0);
@@ -153,7 +138,6 @@ TEST(CumulativeResponse, DisplacementsBeyondTheImageCountNothing) {
 }
 
 TEST(CumulativeResponse, FindsKnownShiftsInEachDirection) {
-  Execution execution({.threads = 2});
   CumulativeResponseOptions options;
   options.displacements_x = {-12, 12};
   options.displacements_y = {-5, 5};
@@ -161,7 +145,7 @@ TEST(CumulativeResponse, FindsKnownShiftsInEachDirection) {
     const Photograph left = texture_at(0, 0, 90, 70);
     // Position in the left image minus position in the right one.
     const Photograph right = texture_at(shift.x_px, shift.y_px, 90, 70);
-    const CumulativeResponse response = cumulative_response(left, right, options, execution);
+    const CumulativeResponse response = cumulative_response(left, right, options, execution());
     for (const ImagePart part : kParts) {
       EXPECT_EQ(response.dominant(part), shift) << shift.x_px << ' ' << shift.y_px;
     }
@@ -175,17 +159,14 @@ TEST(CumulativeResponse, FindsTheShiftOfEachQuadrant) {
   const Photograph shifted[] = {
       texture_at(shifts[0], 0, 100, 80), texture_at(shifts[1], 0, 100, 80),
       texture_at(shifts[2], 0, 100, 80), texture_at(shifts[3], 0, 100, 80)};
-  for (int y = 0; y < 80; ++y) {
-    for (int x = 0; x < 100; ++x) {
-      const int quadrant = (y >= 40 ? 2 : 0) + (x >= 50 ? 1 : 0);
-      right.at(x, y) = std::get<Image<std::uint8_t>>(shifted[quadrant].pixels).at(x, y);
-    }
+  for (const auto [x, y] : positions_of(100, 80)) {
+    const int quadrant = (y >= 40 ? 2 : 0) + (x >= 50 ? 1 : 0);
+    right.at(x, y) = std::get<Image<std::uint8_t>>(shifted[quadrant].pixels).at(x, y);
   }
   CumulativeResponseOptions options;
   options.displacements_x = {-16, 16};
-  Execution execution({.threads = 2});
   const CumulativeResponse response =
-      cumulative_response(left, {std::move(right)}, options, execution);
+      cumulative_response(left, {std::move(right)}, options, execution());
   for (int quadrant = 0; quadrant < 4; ++quadrant) {
     EXPECT_EQ(response.dominant(kParts[quadrant + 1]), (Displacement{shifts[quadrant], 0}));
   }
@@ -193,12 +174,11 @@ TEST(CumulativeResponse, FindsTheShiftOfEachQuadrant) {
 
 TEST(CumulativeResponse, NothingDominatesForLackOfPartners) {
   // Unrelated images: each pixel with a partner is evidence against the displacement.
-  const Photograph left = test::noise<std::uint8_t>(60, 40, 1, 1);
-  const Photograph right = test::noise<std::uint8_t>(60, 40, 1, 2);
+  const Photograph left = noise<std::uint8_t>(60, 40, 1, 1);
+  const Photograph right = noise<std::uint8_t>(60, 40, 1, 2);
   CumulativeResponseOptions options;
   options.displacements_x = {-70, 70};
-  Execution execution({.threads = 2});
-  const CumulativeResponse response = cumulative_response(left, right, options, execution);
+  const CumulativeResponse response = cumulative_response(left, right, options, execution());
   const auto whole = response.dominant(ImagePart::kWhole);
   ASSERT_TRUE(whole.has_value());
   EXPECT_LT(response.at(ImagePart::kWhole, *whole), 0);
@@ -207,13 +187,13 @@ TEST(CumulativeResponse, NothingDominatesForLackOfPartners) {
   ASSERT_TRUE(left_half.has_value());
   EXPECT_TRUE(left_half->x_px <= 15 && left_half->x_px >= -45);
   options.displacements_x = {40, 50};
-  EXPECT_EQ(cumulative_response(left, right, options, execution).dominant(ImagePart::kWhole),
+  EXPECT_EQ(cumulative_response(left, right, options, execution()).dominant(ImagePart::kWhole),
             std::nullopt);
 }
 
 TEST(CumulativeResponse, IsIdenticalForAnyThreads) {
-  const Photograph left = test::noise<std::uint16_t>(277, 53, 3, 1);
-  const Photograph right = test::noise<std::uint16_t>(277, 53, 3, 2);
+  const Photograph left = noise<std::uint16_t>(277, 53, 3, 1);
+  const Photograph right = noise<std::uint16_t>(277, 53, 3, 2);
   CumulativeResponseOptions options;
   options.displacements_x = {-40, 41};
   options.displacements_y = {-1, 1};
@@ -238,18 +218,16 @@ TEST(CumulativeResponse, ConstantImagesHaveNoDominantDisplacement) {
   const Photograph image{std::move(grey)};
   CumulativeResponseOptions options;
   options.displacements_x = {-3, 3};
-  Execution execution({.threads = 1});
-  const CumulativeResponse response = cumulative_response(image, image, options, execution);
+  const CumulativeResponse response = cumulative_response(image, image, options, execution());
   for (const ImagePart part : kParts) {
     EXPECT_EQ(response.dominant(part), std::nullopt);
   }
 }
 
 TEST(CumulativeResponse, RefusesBadOptionsAndUnequalSizes) {
-  Execution execution({.threads = 1});
-  const Photograph image = test::noise<std::uint8_t>(20, 10, 1);
+  const Photograph image = noise<std::uint8_t>(20, 10, 1);
   const auto error_of = [&](const CumulativeResponseOptions& options) {
-    return test::error_of([&] { cumulative_response(image, image, options, execution); });
+    return test::error_of([&] { cumulative_response(image, image, options, execution()); });
   };
   CumulativeResponseOptions options;
   options.displacements_x = {5, 4};
@@ -264,11 +242,9 @@ TEST(CumulativeResponse, RefusesBadOptionsAndUnequalSizes) {
   EXPECT_THAT(error_of(options), HasSubstr("alpha is -1"));
   options.parameters.alpha = 1;
   EXPECT_THAT(test::error_of([&] {
-                cumulative_response(image, test::noise<std::uint8_t>(21, 10, 1), options,
-                                    execution);
+                cumulative_response(image, noise<std::uint8_t>(21, 10, 1), options, execution());
               }),
               HasSubstr("20x10 but right image is 21x10"));
 }
 
-}  // namespace cumulative_response_test
-}  // namespace vantage
+}  // namespace vantage::cumulative_response_test

@@ -1,16 +1,10 @@
 // The map of a camera in the middle of both: against a scene rendered from there.
 #include "engine/matching/selection/cyclopean_map.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "engine/generation/layered_scene.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace cyclopean_map_test {
+namespace vantage::cyclopean_map_test {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint8_t kUnmatched = 255;
@@ -29,9 +23,8 @@ MatchedMap row_of(const std::vector<float>& disparities_px) {
 }
 
 CyclopeanMap cyclopean_of(const MatchedMap& left) {
-  Execution execution({.threads = 1});
   CyclopeanMap map;
-  make_cyclopean_map(left, execution, map);
+  make_cyclopean_map(left, execution(), map);
   return map;
 }
 
@@ -80,18 +73,17 @@ TEST(CyclopeanMap, NothingMatchedIsSeenByNone) {
 }
 
 TEST(CyclopeanMap, AgreesWithASceneRenderedFromTheMiddle) {
-  Execution execution({.threads = 2});
   LayeredSceneOptions options;
   options.width_px = 160;
   options.height_px = 120;
-  const LayeredScene scene(options, execution);
+  const LayeredScene scene(options, execution());
   const SceneView left{0, 0};
   const SceneView middle{0.5, 0};
   const SceneView right{1, 0};
   MatchedMap matched{.disparity_px = scene.render(left, 0).disparity};
   matched.unmatched = scene.occlusion(left, right, 0);
   CyclopeanMap map;
-  make_cyclopean_map(matched, execution, map);
+  make_cyclopean_map(matched, execution(), map);
   const DisparityMap truth = scene.render(middle, 0).disparity;
   const Mask hidden_left = scene.occlusion(middle, left, 0);
   const Mask hidden_right = scene.occlusion(middle, right, 0);
@@ -99,18 +91,16 @@ TEST(CyclopeanMap, AgreesWithASceneRenderedFromTheMiddle) {
   int both_right = 0;
   int one = 0;
   int one_right = 0;
-  for (int y = 0; y < truth.height(); ++y) {
-    for (int x = 0; x < truth.width(); ++x) {
-      const bool of_left = hidden_left.at(x, y) == 0;
-      const bool of_right = hidden_right.at(x, y) == 0;
-      const auto seen = static_cast<SeenBy>(map.seen_by.at(x, y));
-      if (of_left && of_right) {
-        ++both;
-        both_right += std::abs(map.disparity_px.at(x, y) - truth.at(x, y)) < 0.5F ? 1 : 0;
-      } else if (of_left != of_right) {
-        ++one;
-        one_right += seen == (of_left ? SeenBy::kLeft : SeenBy::kRight) ? 1 : 0;
-      }
+  for (const auto [x, y] : positions_of(truth)) {
+    const bool of_left = hidden_left.at(x, y) == 0;
+    const bool of_right = hidden_right.at(x, y) == 0;
+    const auto seen = static_cast<SeenBy>(map.seen_by.at(x, y));
+    if (of_left && of_right) {
+      ++both;
+      both_right += std::abs(map.disparity_px.at(x, y) - truth.at(x, y)) < 0.5F ? 1 : 0;
+    } else if (of_left != of_right) {
+      ++one;
+      one_right += seen == (of_left ? SeenBy::kLeft : SeenBy::kRight) ? 1 : 0;
     }
   }
   EXPECT_GT(both, 10000);
@@ -120,5 +110,4 @@ TEST(CyclopeanMap, AgreesWithASceneRenderedFromTheMiddle) {
   EXPECT_GT(one_right, 0.8 * one) << one_right << " of " << one;
 }
 
-}  // namespace cyclopean_map_test
-}  // namespace vantage
+}  // namespace vantage::cyclopean_map_test

@@ -1,16 +1,10 @@
 #include "engine/io/maps/map_io.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_formats.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace depth_io_test {
+namespace vantage::depth_io_test {
 
 Image<float> some_depths() {
   Image<float> depths(3, 2);
@@ -34,9 +28,9 @@ TEST(DepthIo, PngHoldsMillimetres) {
   EXPECT_EQ(image.at(1, 1), 12000);
   Image<float> far(1, 1);
   far.at(0, 0) = 65.6F;
-  EXPECT_NE(test::error_of([&] { write_depth(path, far.view()); }).find("expected at most 65.535"),
+  EXPECT_NE(error_of([&] { write_depth(path, far.view()); }).find("expected at most 65.535"),
             std::string::npos);
-  EXPECT_TRUE(test::same(read_photograph(path), read));  // as it was
+  EXPECT_TRUE(same(read_photograph(path), read));  // as it was
 }
 
 TEST(DepthIo, OtherFormatsHoldMetres) {
@@ -49,12 +43,10 @@ TEST(DepthIo, OtherFormatsHoldMetres) {
     const auto path = folder / ("z" + std::string(format.extension));
     write_depth(path, depths.view());
     const DisparityMap read = read_disparity(path);
-    for (int y = 0; y < 2; ++y) {
-      for (int x = 0; x < 3; ++x) {
-        EXPECT_TRUE(read.at(x, y) == depths.at(x, y) ||
-                    (std::isnan(read.at(x, y)) && std::isnan(depths.at(x, y))))
-            << format.extension;
-      }
+    for (const auto [x, y] : positions_of(3, 2)) {
+      EXPECT_TRUE(read.at(x, y) == depths.at(x, y) ||
+                  (std::isnan(read.at(x, y)) && std::isnan(depths.at(x, y))))
+          << format.extension;
     }
     EXPECT_EQ(largest_depth_m(path), std::numeric_limits<double>::infinity());
   }
@@ -62,11 +54,10 @@ TEST(DepthIo, OtherFormatsHoldMetres) {
 }
 
 TEST(DepthIo, SaysWhatIsWrong) {
-  EXPECT_EQ(test::error_of([] { write_depth("z.flo", some_depths().view()); }),
+  EXPECT_EQ(error_of([] { write_depth("z.flo", some_depths().view()); }),
             "cannot write z.flo: unknown depth extension '.flo', expected .pfm, .png, .tiff, .exr "
             "or .npy");
-  EXPECT_NE(test::error_of([] { write_depth("z.npy", Image<float>(0, 0).view()); }), "");
+  EXPECT_NE(error_of([] { write_depth("z.npy", Image<float>(0, 0).view()); }), "");
 }
 
-}  // namespace depth_io_test
-}  // namespace vantage
+}  // namespace vantage::depth_io_test

@@ -1,11 +1,8 @@
 #include "engine/sequence/depth_picture.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <limits>
-
-namespace vantage {
-namespace depth_picture_test {
+namespace vantage::depth_picture_test {
 
 /// Two shots, the second with a range of its own.
 ShotTable two_shots() {
@@ -58,5 +55,4 @@ TEST(DepthPicture, RangesAreOfTheFilmTheShotOrGiven) {
   EXPECT_EQ(one.max_px - one.min_px, 1);
 }
 
-}  // namespace depth_picture_test
-}  // namespace vantage
+}  // namespace vantage::depth_picture_test

@@ -1,12 +1,8 @@
 #include "engine/view_geometry/depth_resolution.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-#include <limits>
-
-namespace vantage {
-namespace depth_resolution_test {
+namespace vantage::depth_resolution_test {
 
 /// The example of (4.2): 640 pixels over 50 degrees, a baseline of 50 mm, a resolution of a pixel.
 TEST(DepthResolution, IsThatOfTheBooksExample) {
@@ -41,14 +37,12 @@ TEST(DepthResolution, OfAMapIsThatOfItsPixels) {
   map.at(1, 0) = std::numeric_limits<float>::quiet_NaN();
   map.at(2, 0) = 0.0625F;
   map.at(0, 1) = 2;
-  Execution execution({.threads = 2});
   Image<float> resolution;
-  depth_resolution_map(map.view(), scale, 0.125, execution, resolution);
+  depth_resolution_map(map.view(), scale, 0.125, execution(), resolution);
   EXPECT_FLOAT_EQ(resolution.at(0, 0), static_cast<float>(*depth_resolution(scale, 0.125, 20)));
   EXPECT_TRUE(std::isnan(resolution.at(1, 0)));
   EXPECT_TRUE(std::isnan(resolution.at(2, 0)));
   EXPECT_FLOAT_EQ(resolution.at(0, 1), static_cast<float>(*depth_resolution(scale, 0.125, 2)));
 }
 
-}  // namespace depth_resolution_test
-}  // namespace vantage
+}  // namespace vantage::depth_resolution_test

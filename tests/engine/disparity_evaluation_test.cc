@@ -1,17 +1,8 @@
 #include "engine/evaluation/disparity_evaluation.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <vector>
-
-#include "engine/error.h"
-
-namespace vantage {
-namespace disparity_evaluation_test {
+namespace vantage::disparity_evaluation_test {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInf = std::numeric_limits<float>::infinity();
@@ -64,18 +55,15 @@ TEST(DisparityEvaluation, AgreesWithPlainTranscriptionOnRandomMaps) {
       Mask mask(width, height);
       std::vector<double> errors;
       long evaluated = 0;
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          map.at(x, y) = die(random) == 0 ? kNan : level(random);
-          truth.at(x, y) = die(random) == 0 ? kInf : level(random);
-          mask.at(x, y) = static_cast<std::uint8_t>(die(random) < 7 ? 255 : die(random));
-          const bool inside =
-              x >= border && y >= border && x + border < width && y + border < height;
-          if (inside && mask.at(x, y) == 255 && std::isfinite(truth.at(x, y))) {
-            ++evaluated;
-            if (std::isfinite(map.at(x, y))) {
-              errors.push_back(std::abs(static_cast<double>(map.at(x, y)) - truth.at(x, y)));
-            }
+      for (const auto [x, y] : positions_of(width, height)) {
+        map.at(x, y) = die(random) == 0 ? kNan : level(random);
+        truth.at(x, y) = die(random) == 0 ? kInf : level(random);
+        mask.at(x, y) = static_cast<std::uint8_t>(die(random) < 7 ? 255 : die(random));
+        const bool inside = x >= border && y >= border && x + border < width && y + border < height;
+        if (inside && mask.at(x, y) == 255 && std::isfinite(truth.at(x, y))) {
+          ++evaluated;
+          if (std::isfinite(map.at(x, y))) {
+            errors.push_back(std::abs(static_cast<double>(map.at(x, y)) - truth.at(x, y)));
           }
         }
       }
@@ -138,5 +126,4 @@ TEST(DisparityEvaluation, RejectsWhatCannotBeCompared) {
                Error);
 }
 
-}  // namespace disparity_evaluation_test
-}  // namespace vantage
+}  // namespace vantage::disparity_evaluation_test

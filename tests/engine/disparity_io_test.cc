@@ -1,27 +1,10 @@
 #include "engine/io/maps/map_io.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
-
 #include "engine/io/images/photograph_io.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace disparity_io_test {
-
-using test::bytes_of;
-using test::error_of;
-using test::noise;
-using test::put_bytes;
-using test::put_text;
-using ::testing::HasSubstr;
+namespace vantage::disparity_io_test {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -32,12 +15,9 @@ bool same_or_both_unknown(float a, float b) { return a == b || (std::isnan(a) &&
 DisparityMap random_map(int width, int height, int low, unsigned seed = 3) {
   std::mt19937 generator(seed);
   DisparityMap map(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const float d =
-          static_cast<float>(generator() % 20000 + 1) / 256.0F + static_cast<float>(low);
-      map.at(x, y) = generator() % 5 == 0 ? kNan : d;
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    const float d = static_cast<float>(generator() % 20000 + 1) / 256.0F + static_cast<float>(low);
+    map.at(x, y) = generator() % 5 == 0 ? kNan : d;
   }
   return map;
 }
@@ -63,11 +43,9 @@ TEST(DisparityIo, EveryFormatReturnsWhatWasWritten) {
       const DisparityMap read = read_disparity(folder / name);
       ASSERT_EQ(read.width(), width);
       ASSERT_EQ(read.height(), height);
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          EXPECT_TRUE(same_or_both_unknown(read.at(x, y), map.at(x, y)))
-              << name << " " << x << "," << y << ": " << read.at(x, y) << " " << map.at(x, y);
-        }
+      for (const auto [x, y] : positions_of(width, height)) {
+        EXPECT_TRUE(same_or_both_unknown(read.at(x, y), map.at(x, y)))
+            << name << " " << x << "," << y << ": " << read.at(x, y) << " " << map.at(x, y);
       }
     }
   }
@@ -266,13 +244,11 @@ TEST(DisparityIo, ReadsAllSharedTruths) {
     float low = kInfinity;
     float high = -kInfinity;
     int known = 0;
-    for (int y = 0; y < map.height(); ++y) {
-      for (int x = 0; x < map.width(); ++x) {
-        if (std::isfinite(map.at(x, y))) {
-          low = std::min(low, map.at(x, y));
-          high = std::max(high, map.at(x, y));
-          ++known;
-        }
+    for (const auto [x, y] : positions_of(map)) {
+      if (std::isfinite(map.at(x, y))) {
+        low = std::min(low, map.at(x, y));
+        high = std::max(high, map.at(x, y));
+        ++known;
       }
     }
     EXPECT_NEAR(low, truth.min, 0.006) << truth.file;
@@ -282,5 +258,4 @@ TEST(DisparityIo, ReadsAllSharedTruths) {
   }
 }
 
-}  // namespace disparity_io_test
-}  // namespace vantage
+}  // namespace vantage::disparity_io_test

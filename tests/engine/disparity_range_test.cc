@@ -1,26 +1,14 @@
 #include "engine/matching/range_estimation.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <limits>
-#include <utility>
-
 #include "engine/generation/book_pairs.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace disparity_range_test {
-
-using testing::HasSubstr;
+namespace vantage::disparity_range_test {
 
 struct Judged {
   double covered = 0;  ///< share of the known disparities inside the range
@@ -32,15 +20,13 @@ Judged judge(DisparityRange range, const DisparityMap& truth) {
   float max = -min;
   int inside = 0;
   int known = 0;
-  for (int y = 0; y < truth.height(); ++y) {
-    for (int x = 0; x < truth.width(); ++x) {
-      const float d = truth.at(x, y);
-      if (std::isfinite(d)) {
-        ++known;
-        inside += d >= static_cast<float>(range.min) && d <= static_cast<float>(range.max) ? 1 : 0;
-        min = std::min(min, d);
-        max = std::max(max, d);
-      }
+  for (const auto [x, y] : positions_of(truth)) {
+    const float d = truth.at(x, y);
+    if (std::isfinite(d)) {
+      ++known;
+      inside += d >= static_cast<float>(range.min) && d <= static_cast<float>(range.max) ? 1 : 0;
+      min = std::min(min, d);
+      max = std::max(max, d);
     }
   }
   return {static_cast<double>(inside) / known, range.count() / (max - min + 1.0)};
@@ -59,7 +45,6 @@ BookPair flat_pair(int width, int height, int disparity, BookPattern pattern) {
 }
 
 TEST(DisparityRange, CoversMadeUpScenes) {
-  Execution execution({.threads = 2});
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     LayeredSceneOptions options;
     options.width_px = 320;
@@ -71,10 +56,10 @@ TEST(DisparityRange, CoversMadeUpScenes) {
     options.right_offset = -8;
     options.noise_sigma = 2;
     options.seed = seed;
-    const LayeredScene scene(options, execution);
+    const LayeredScene scene(options, execution());
     const SceneRendering left = scene.render({0, 0}, 0);
     const SceneRendering right = scene.render({1, 0}, 0);
-    const DisparityRange range = estimate_disparity_range(left.image, right.image, execution);
+    const DisparityRange range = estimate_disparity_range(left.image, right.image, execution());
     const Judged judged = judge(range, left.disparity);
     EXPECT_GE(judged.covered, 0.99) << range.min << ':' << range.max;
     EXPECT_LE(judged.ratio, 2.2) << range.min << ':' << range.max;
@@ -82,7 +67,6 @@ TEST(DisparityRange, CoversMadeUpScenes) {
 }
 
 TEST(DisparityRange, CoversTheBookPairsWithTexture) {
-  Execution execution({.threads = 2});
   for (const char* name : {"rds-square", "real-square", "rds-bars", "real-bars"}) {
     for (const double noise : {0.0, 4.0}) {
       BookPairOptions options = book_pair_options(name);
@@ -90,7 +74,7 @@ TEST(DisparityRange, CoversTheBookPairsWithTexture) {
       options.height_px = 160;
       options.noise_sigma = noise;
       const BookPair pair = make_book_pair(options);
-      const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+      const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution());
       EXPECT_GE(judge(range, pair.left_disparity).covered, 0.95)
           << name << ' ' << range.min << ':' << range.max;
       EXPECT_GE(range.min, -10);
@@ -110,7 +94,6 @@ TEST(DisparityRange, CoversPhotographs) {
     const char* truth;
     double scale;
   };
-  Execution execution({.threads = 2});
   for (const Scene& scene :
        {Scene{"tsukuba/im3.ppm", "tsukuba/im4.ppm", "tsukuba/disp3.pgm", 16},
         Scene{"venus/im2.ppm", "venus/im6.ppm", "venus/disp2.pgm", 8},
@@ -118,7 +101,7 @@ TEST(DisparityRange, CoversPhotographs) {
         Scene{"bowling1/view1.png", "bowling1/view5.png", "bowling1/disp1.png", 2},
         Scene{"motorcycle/im0.png", "motorcycle/im1E.png", "motorcycle/disp0.pfm", 0}}) {
     const DisparityRange range = estimate_disparity_range(
-        read_photograph(data / scene.left), read_photograph(data / scene.right), execution);
+        read_photograph(data / scene.left), read_photograph(data / scene.right), execution());
     const Judged judged = judge(range, read_disparity(data / scene.truth, scene.scale));
     EXPECT_GE(judged.covered, 0.99) << scene.left << ' ' << range.min << ':' << range.max;
     EXPECT_LE(judged.ratio, 2.6) << scene.left << ' ' << range.min << ':' << range.max;
@@ -126,10 +109,9 @@ TEST(DisparityRange, CoversPhotographs) {
 }
 
 TEST(DisparityRange, FindsNegativeAndLargeDisparities) {
-  Execution execution({.threads = 2});
   for (const int disparity : {-20, -7, 0, 31, 60}) {
     const BookPair pair = flat_pair(240, 64, disparity, BookPattern::kRandomDots);
-    const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+    const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution());
     EXPECT_GE(disparity, range.min);
     EXPECT_LE(disparity + 1, range.max);
     EXPECT_LE(range.count(), 14) << range.min << ':' << range.max;
@@ -137,65 +119,56 @@ TEST(DisparityRange, FindsNegativeAndLargeDisparities) {
 }
 
 TEST(DisparityRange, FindsASmallObjectFarBeforeTheBackground) {
-  Execution execution({.threads = 2});
   BookPairOptions options;
   options.width_px = 240;
   options.height_px = 160;
   options.front_disparity_px = 75;
   const BookPair pair = make_book_pair(options);
-  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution());
   EXPECT_LE(range.min, 2);
   EXPECT_GE(range.max, 75);
 }
 
 TEST(DisparityRange, IgnoresWhatTheOtherImageDoesNotConfirm) {
-  Execution execution({.threads = 2});
   BookPair pair = flat_pair(320, 96, 4, BookPattern::kRandomDots);
   // A piece of the right image that the left one shows a second time, 100 columns away.
   auto& left = std::get<Image<std::uint8_t>>(pair.left.pixels);
   const auto& right = std::get<Image<std::uint8_t>>(pair.right.pixels);
-  for (int y = 32; y < 64; ++y) {
-    for (int x = 224; x < 288; ++x) {
-      left.at(x, y) = right.at(x - 100, y);
-    }
+  for (const auto [x, y] : positions_of({224, 288}, {32, 64})) {
+    left.at(x, y) = right.at(x - 100, y);
   }
-  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution());
   EXPECT_LE(range.min, 4);
   EXPECT_GE(range.max, 5);
   EXPECT_LT(range.max, 100);
 }
 
 TEST(DisparityRange, RepeatedTextureIsNoEvidence) {
-  Execution execution({.threads = 2});
   Photograph views[2];
   for (unsigned view = 0; view < 2; ++view) {
-    Photograph noise = test::noise<std::uint8_t>(320, 96, 1, view + 1);
-    auto& pixels = std::get<Image<std::uint8_t>>(noise.pixels);
-    for (int y = 0; y < 96; ++y) {
-      for (int x = 0; x < 320; ++x) {
-        const int stripe = x % 8 < 4 ? 60 : 180;
-        pixels.at(x, y) = static_cast<std::uint8_t>(stripe + pixels.at(x, y) / 32);
-      }
+    Photograph view_noise = noise<std::uint8_t>(320, 96, 1, view + 1);
+    auto& pixels = std::get<Image<std::uint8_t>>(view_noise.pixels);
+    for (const auto [x, y] : positions_of(320, 96)) {
+      const int stripe = x % 8 < 4 ? 60 : 180;
+      pixels.at(x, y) = static_cast<std::uint8_t>(stripe + pixels.at(x, y) / 32);
     }
-    views[view] = std::move(noise);
+    views[view] = std::move(view_noise);
   }
-  EXPECT_THAT(test::error_of([&] { estimate_disparity_range(views[0], views[1], execution); }),
+  EXPECT_THAT(test::error_of([&] { estimate_disparity_range(views[0], views[1], execution()); }),
               HasSubstr("no disparity range can be estimated"));
 }
 
 TEST(DisparityRange, ReducesLargeImages) {
-  Execution execution({.threads = 2});
   const BookPair pair = flat_pair(2001, 97, 90, BookPattern::kGrass);
-  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution());
   EXPECT_GE(90, range.min);
   EXPECT_LE(91, range.max);
   EXPECT_LE(range.count(), 30);
 }
 
 TEST(DisparityRange, WorksOnImagesOfOneTile) {
-  Execution execution({.threads = 1});
   const BookPair pair = flat_pair(40, 12, 3, BookPattern::kRandomDots);
-  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution);
+  const DisparityRange range = estimate_disparity_range(pair.left, pair.right, execution());
   EXPECT_GE(3, range.min);
   EXPECT_LE(3, range.max);
 }
@@ -209,41 +182,37 @@ TEST(DisparityRange, IsIdenticalForAnyThreads) {
 }
 
 TEST(DisparityRange, SaysThatThereIsNoEvidence) {
-  Execution execution({.threads = 1});
   Image<std::uint8_t> grey(100, 60);
   grey.fill(128);
   const Photograph constant{std::move(grey)};
   const auto error_of = [&](const Photograph& left, const Photograph& right) {
-    return test::error_of([&] { estimate_disparity_range(left, right, execution); });
+    return test::error_of([&] { estimate_disparity_range(left, right, execution()); });
   };
   EXPECT_THAT(error_of(constant, constant), HasSubstr("no disparity range can be estimated"));
   EXPECT_THAT(error_of(constant, constant), HasSubstr("`disparities` MIN:MAX"));
-  EXPECT_THAT(error_of(test::noise<std::uint8_t>(200, 100, 1, 1),
-                       test::noise<std::uint8_t>(200, 100, 1, 2)),
+  EXPECT_THAT(error_of(noise<std::uint8_t>(200, 100, 1, 1), noise<std::uint8_t>(200, 100, 1, 2)),
               HasSubstr("no disparity range can be estimated"));
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 40}, {2, 2}}) {
-    EXPECT_THAT(error_of(test::noise<std::uint8_t>(width, height, 1, 1),
-                         test::noise<std::uint8_t>(width, height, 1, 2)),
+    EXPECT_THAT(error_of(noise<std::uint8_t>(width, height, 1, 1),
+                         noise<std::uint8_t>(width, height, 1, 2)),
                 HasSubstr("no disparity range can be estimated"));
   }
-  EXPECT_THAT(error_of(constant, test::noise<std::uint8_t>(100, 61, 1)),
+  EXPECT_THAT(error_of(constant, noise<std::uint8_t>(100, 61, 1)),
               HasSubstr("expected equal sizes"));
-  EXPECT_THAT(error_of(test::noise<std::uint8_t>(4000, 3, 1), test::noise<std::uint8_t>(1, 1, 1)),
+  EXPECT_THAT(error_of(noise<std::uint8_t>(4000, 3, 1), noise<std::uint8_t>(1, 1, 1)),
               HasSubstr("expected equal sizes"));
 }
 
 TEST(DisparityRange, MatchersRefuseWhatIsNotYetChosen) {
-  Execution execution({.threads = 1});
   MatchOptions options;
   options.disparities_auto = true;
-  EXPECT_THAT(test::error_of([&] { const StereoMatcher matcher(options, execution); }),
+  EXPECT_THAT(test::error_of([&] { const StereoMatcher matcher(options, execution()); }),
               HasSubstr("disparities is auto"));
   options.disparities_auto = false;
   options.disparities_y = {0, 0};
   options.disparities_y_auto = true;
-  EXPECT_THAT(test::error_of([&] { const StereoMatcher matcher(options, execution); }),
+  EXPECT_THAT(test::error_of([&] { const StereoMatcher matcher(options, execution()); }),
               HasSubstr("disparities is auto"));
 }
 
-}  // namespace disparity_range_test
-}  // namespace vantage
+}  // namespace vantage::disparity_range_test

@@ -1,11 +1,8 @@
 #include "engine/evaluation/disparity_section.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-
-namespace vantage {
-namespace disparity_section_test {
+namespace vantage::disparity_section_test {
 
 TEST(DisparitySection, PictureIsDarkWhereLikelyAndUpward) {
   DisparitySection section;
@@ -23,5 +20,4 @@ TEST(DisparitySection, PictureIsDarkWhereLikelyAndUpward) {
   EXPECT_FLOAT_EQ(section_quantile(section, 1), 20);
 }
 
-}  // namespace disparity_section_test
-}  // namespace vantage
+}  // namespace vantage::disparity_section_test

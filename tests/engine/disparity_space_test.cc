@@ -1,14 +1,10 @@
 #include "engine/evaluation/disparity_space.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "engine/evaluation/method_comparison.h"
 #include "engine/image/intensity_rows.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace disparity_space_test {
+namespace vantage::disparity_space_test {
 
 BookPair small_pair() {
   ComparisonOptions options;
@@ -28,11 +24,10 @@ std::vector<float> grey_row(const Photograph& photograph, int y) {
 
 // (6.9) by hand on top of the engine's E0, which is (6.1).
 TEST(DisparitySpace, HoldsTheMembranesEnergies) {
-  Execution execution({.threads = 2});
   const BookPair pair = small_pair();
   const auto space = [&](int iterations) {
     return disparity_space(pair, options_of("membrane", iterations), VolumeKind::kAggregated,
-                           execution);
+                           execution());
   };
   const DisparitySpace first = space(0);
   const DisparitySpace once = space(1);
@@ -58,14 +53,13 @@ TEST(DisparitySpace, HoldsTheMembranesEnergies) {
 }
 
 TEST(DisparitySpace, TheFourStepsAreOneIterationOfTheEngine) {
-  Execution execution({.threads = 2});
   const BookPair pair = small_pair();
   const DisparitySpace costs =
-      disparity_space(pair, options_of("bayes", 0), VolumeKind::kCosts, execution);
+      disparity_space(pair, options_of("bayes", 0), VolumeKind::kCosts, execution());
   for (const int iteration : {1, 4}) {
     const auto space = [&](int iterations) {
       return disparity_space(pair, options_of("bayes", iterations), VolumeKind::kAggregated,
-                             execution);
+                             execution());
     };
     const DisparitySpace before = space(iteration - 1);
     const DisparitySpace after = space(iteration);
@@ -84,5 +78,4 @@ TEST(DisparitySpace, TheFourStepsAreOneIterationOfTheEngine) {
   }
 }
 
-}  // namespace disparity_space_test
-}  // namespace vantage
+}  // namespace vantage::disparity_space_test

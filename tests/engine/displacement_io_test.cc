@@ -1,26 +1,9 @@
 #include "engine/io/maps/map_io.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "engine/io/images/photograph_io.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace displacement_io_test {
-
-using test::bytes_of;
-using test::error_of;
-using testing::HasSubstr;
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+namespace vantage::displacement_io_test {
 
 /// 3×2 displacements; at (2, 0) and (0, 1) one component is unknown.
 struct Displacements {
@@ -114,5 +97,4 @@ TEST(DisplacementIo, RefusesWhatHoldsOneComponent) {
   EXPECT_EQ(folder.entries(), 0U);
 }
 
-}  // namespace displacement_io_test
-}  // namespace vantage
+}  // namespace vantage::displacement_io_test

@@ -1,23 +1,14 @@
 #include "engine/refinement/edge_snapping.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <functional>
-#include <vector>
-
 #include "engine/execution.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace edge_snapping_test {
+namespace vantage::edge_snapping_test {
 
 Photograph picture(int width, int height, const std::function<int(int x, int y)>& grey_level) {
   Image<std::uint8_t> image(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      image.at(x, y) = static_cast<std::uint8_t>(grey_level(x, y));
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    image.at(x, y) = static_cast<std::uint8_t>(grey_level(x, y));
   }
   return {std::move(image)};
 }
@@ -31,11 +22,9 @@ Mask edges_of(const Photograph& photograph, const ExecutionOptions& options = {.
 
 int count(const Mask& mask) {
   int set = 0;
-  for (int y = 0; y < mask.height(); ++y) {
-    for (int x = 0; x < mask.width(); ++x) {
-      EXPECT_TRUE(mask.at(x, y) == 0 || mask.at(x, y) == 255);
-      set += mask.at(x, y) != 0 ? 1 : 0;
-    }
+  for (const auto [x, y] : positions_of(mask)) {
+    EXPECT_TRUE(mask.at(x, y) == 0 || mask.at(x, y) == 255);
+    set += mask.at(x, y) != 0 ? 1 : 0;
   }
   return set;
 }
@@ -79,22 +68,18 @@ TEST(FindEdges, DepthAndColourDoNotMatter) {
   Image<std::uint16_t> deep(53, 41);
   Image<float> real(53, 41);
   Image<std::uint8_t> colour(53, 41, 3);
-  for (int y = 0; y < 41; ++y) {
-    for (int x = 0; x < 53; ++x) {
-      deep.at(x, y) = static_cast<std::uint16_t>(257 * grey_level(x, y));
-      real.at(x, y) = static_cast<float>(grey_level(x, y)) / 255;
-      for (int channel = 0; channel < 3; ++channel) {
-        colour.at(x, y, channel) = static_cast<std::uint8_t>(grey_level(x, y));
-      }
+  for (const auto [x, y] : positions_of(53, 41)) {
+    deep.at(x, y) = static_cast<std::uint16_t>(257 * grey_level(x, y));
+    real.at(x, y) = static_cast<float>(grey_level(x, y)) / 255;
+    for (int channel = 0; channel < 3; ++channel) {
+      colour.at(x, y, channel) = static_cast<std::uint8_t>(grey_level(x, y));
     }
   }
   for (const Photograph& same :
        {Photograph{std::move(deep)}, Photograph{std::move(real)}, Photograph{std::move(colour)}}) {
     const Mask edges = edges_of(same);
-    for (int y = 0; y < 41; ++y) {
-      for (int x = 0; x < 53; ++x) {
-        ASSERT_EQ(edges.at(x, y), expected.at(x, y)) << x << ", " << y;
-      }
+    for (const auto [x, y] : positions_of(53, 41)) {
+      ASSERT_EQ(edges.at(x, y), expected.at(x, y)) << x << ", " << y;
     }
   }
 }
@@ -118,22 +103,17 @@ TEST(SnapDiscontinuities, MovesThemToTheEdgesOfTheImageInEveryRow) {
     EdgeSnappingWork work;
     find_edges(image, execution, work);
     DisparityMap map(40, 37);
-    for (int y = 0; y < map.height(); ++y) {
-      for (int x = 0; x < map.width(); ++x) {
-        map.at(x, y) = x < 20 + y % 6 - 3 ? 9.0F : 3.0F;
-      }
+    for (const auto [x, y] : positions_of(map)) {
+      map.at(x, y) = x < 20 + y % 6 - 3 ? 9.0F : 3.0F;
     }
     snap_discontinuities(work.edges, 4, execution, map);
-    for (int y = 0; y < map.height(); ++y) {
-      for (int x = 0; x < map.width(); ++x) {
-        // Beside the edge pixel, which is one of 19 and 20.
-        if (x < 19 || x > 20) {
-          ASSERT_EQ(map.at(x, y), x < 20 ? 9.0F : 3.0F) << x << ", " << y;
-        }
+    for (const auto [x, y] : positions_of(map)) {
+      // Beside the edge pixel, which is one of 19 and 20.
+      if (x < 19 || x > 20) {
+        ASSERT_EQ(map.at(x, y), x < 20 ? 9.0F : 3.0F) << x << ", " << y;
       }
     }
   }
 }
 
-}  // namespace edge_snapping_test
-}  // namespace vantage
+}  // namespace vantage::edge_snapping_test

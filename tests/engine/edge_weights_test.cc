@@ -1,21 +1,12 @@
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/levels/level_extents.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <utility>
-#include <vector>
-
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/table_keys.h"
 
-namespace vantage {
-namespace edge_weights_test {
+namespace vantage::edge_weights_test {
 
 MethodParameters parameters_with(double edge_weight, int levels) {
   MethodParameters parameters = book_parameters(MatchMethod::kBayes);
@@ -48,33 +39,29 @@ struct PlainGrey {
   }
 };
 
-PlainGrey plain_grey(const Photograph& photograph) {
+PlainGrey grey_of(const Photograph& photograph) {
   const auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
   PlainGrey grey{image.width(), image.height(), {}};
-  for (int y = 0; y < grey.height; ++y) {
-    for (int x = 0; x < grey.width; ++x) {
-      grey.levels.push_back(image.channels() == 1
-                                ? image.at(x, y)
-                                : 0.299 * image.at(x, y, 0) + 0.587 * image.at(x, y, 1) +
-                                      0.114 * image.at(x, y, 2));
-    }
+  for (const auto [x, y] : positions_of(grey.width, grey.height)) {
+    grey.levels.push_back(image.channels() == 1
+                              ? image.at(x, y)
+                              : 0.299 * image.at(x, y, 0) + 0.587 * image.at(x, y, 1) +
+                                    0.114 * image.at(x, y, 2));
   }
   return grey;
 }
 
 PlainGrey halved(const PlainGrey& finer) {
   PlainGrey coarser{(finer.width + 1) / 2, (finer.height + 1) / 2, {}};
-  for (int y = 0; y < coarser.height; ++y) {
-    for (int x = 0; x < coarser.width; ++x) {
-      double sum = 0;
-      int samples = 0;
-      for (int v = 2 * y; v < std::min(2 * y + 2, finer.height); ++v) {
-        for (int u = 2 * x; u < std::min(2 * x + 2, finer.width); ++u, ++samples) {
-          sum += finer.at(u, v);
-        }
+  for (const auto [x, y] : positions_of(coarser.width, coarser.height)) {
+    double sum = 0;
+    int samples = 0;
+    for (int v = 2 * y; v < std::min(2 * y + 2, finer.height); ++v) {
+      for (int u = 2 * x; u < std::min(2 * x + 2, finer.width); ++u, ++samples) {
+        sum += finer.at(u, v);
       }
-      coarser.levels.push_back(sum / samples);
     }
+    coarser.levels.push_back(sum / samples);
   }
   return coarser;
 }
@@ -82,15 +69,13 @@ PlainGrey halved(const PlainGrey& finer) {
 /// One step of anisotropic diffusion.
 PlainGrey diffused(const PlainGrey& grey) {
   PlainGrey result = grey;
-  for (int y = 0; y < grey.height; ++y) {
-    for (int x = 0; x < grey.width; ++x) {
-      for (const auto& [u, v] :
-           {std::pair(x - 1, y), std::pair(x + 1, y), std::pair(x, y - 1), std::pair(x, y + 1)}) {
-        if (u >= 0 && u < grey.width && v >= 0 && v < grey.height) {
-          const double difference = grey.at(u, v) - grey.at(x, y);
-          result.levels[static_cast<std::size_t>(y * grey.width + x)] +=
-              0.2 * difference * std::exp(-std::abs(difference) / 5);
-        }
+  for (const auto [x, y] : positions_of(grey.width, grey.height)) {
+    for (const auto& [u, v] :
+         {std::pair(x - 1, y), std::pair(x + 1, y), std::pair(x, y - 1), std::pair(x, y + 1)}) {
+      if (u >= 0 && u < grey.width && v >= 0 && v < grey.height) {
+        const double difference = grey.at(u, v) - grey.at(x, y);
+        result.levels[static_cast<std::size_t>(y * grey.width + x)] +=
+            0.2 * difference * std::exp(-std::abs(difference) / 5);
       }
     }
   }
@@ -98,7 +83,6 @@ PlainGrey diffused(const PlainGrey& grey) {
 }
 
 TEST(EdgeWeightLevels, AreThoseOfNeighboursOnEachLevel) {
-  Execution execution({.threads = 2});
   EdgeWeightLevels levels;
   struct Shape {
     int width;
@@ -108,8 +92,8 @@ TEST(EdgeWeightLevels, AreThoseOfNeighboursOnEachLevel) {
   for (const Shape& shape : {Shape{37, 29, 1}, Shape{21, 13, 3}, Shape{1, 7, 1}, Shape{1, 1, 1},
                              Shape{5, 1, 3}, Shape{64, 33, 1}}) {
     const Photograph photograph = random_photograph(shape.width, shape.height, shape.channels);
-    const auto weights = levels.prepare(photograph, parameters_with(0.2, 4), execution);
-    PlainGrey grey = plain_grey(photograph);
+    const auto weights = levels.prepare(photograph, parameters_with(0.2, 4), execution());
+    PlainGrey grey = grey_of(photograph);
     for (const EdgeWeights& level : weights) {
       for (int y = 0; y < grey.height; ++y) {
         for (int x = 0; x <= grey.width; ++x) {
@@ -144,7 +128,7 @@ TEST(EdgeWeights, AreThoseOfTheImageDiffusedAlong) {
       Execution execution({.threads = threads});
       EdgeWeights weights;
       weights.prepare(std::as_const(grey).view(), parameters, execution);
-      PlainGrey seen = plain_grey(photograph);
+      PlainGrey seen = grey_of(photograph);
       for (int n = 1; n <= kSteps + 2; ++n) {
         seen = n <= kSteps ? diffused(seen) : seen;
         for (int y = 0; y < height; ++y) {
@@ -162,7 +146,6 @@ TEST(EdgeWeights, AreThoseOfTheImageDiffusedAlong) {
 }
 
 TEST(EdgeWeightLevels, AreTheSameInFixedPointWithTheWeightOfNeighbours) {
-  Execution execution({.threads = 2});
   MethodParameters parameters = parameters_with(0.2, 4);
   parameters.mu = 0.3;
   for (const auto& [width, height] : {std::pair(37, 29), std::pair(1, 1), std::pair(3, 40)}) {
@@ -170,9 +153,9 @@ TEST(EdgeWeightLevels, AreTheSameInFixedPointWithTheWeightOfNeighbours) {
     EdgeWeightLevels in_floats;
     EdgeWeightLevels in_fixed_point;
     parameters.prior_smoothing = PriorSmoothing::kSum;
-    const auto floats = in_floats.prepare(photograph, parameters, execution);
+    const auto floats = in_floats.prepare(photograph, parameters, execution());
     parameters.prior_smoothing = PriorSmoothing::kMaximum;
-    const auto fixed = in_fixed_point.prepare(photograph, parameters, execution);
+    const auto fixed = in_fixed_point.prepare(photograph, parameters, execution());
     ASSERT_EQ(floats.size(), fixed.size());
     const auto extents = level_extents({width, height}, 4);
     for (std::size_t level = 0; level < fixed.size(); ++level) {
@@ -194,22 +177,20 @@ TEST(EdgeWeightLevels, AreTheSameInFixedPointWithTheWeightOfNeighbours) {
 }
 
 TEST(EdgeWeightLevels, AsManyAsTheImageHas) {
-  Execution execution({.threads = 1});
   EdgeWeightLevels levels;
   const Photograph photograph = random_photograph(37, 29, 1);
-  EXPECT_EQ(levels.prepare(photograph, parameters_with(0.2, 1), execution).size(), 1U);
-  EXPECT_EQ(levels.prepare(photograph, parameters_with(0.2, 10), execution).size(), 6U);
-  EXPECT_TRUE(levels.prepare(photograph, parameters_with(1, 4), execution).empty());
-  for (const Aggregation aggregation : test::all_aggregations()) {
+  EXPECT_EQ(levels.prepare(photograph, parameters_with(0.2, 1), execution()).size(), 1U);
+  EXPECT_EQ(levels.prepare(photograph, parameters_with(0.2, 10), execution()).size(), 6U);
+  EXPECT_TRUE(levels.prepare(photograph, parameters_with(1, 4), execution()).empty());
+  for (const Aggregation aggregation : all_aggregations()) {
     MethodParameters parameters = parameters_with(0.2, 4);
     parameters.aggregation = aggregation;
-    EXPECT_EQ(levels.prepare(photograph, parameters, execution).empty(),
+    EXPECT_EQ(levels.prepare(photograph, parameters, execution()).empty(),
               !aggregation_of(aggregation).is_iterative);
   }
 }
 
 TEST(EdgeWeightLevels, TakeWhatIsPlanned) {
-  Execution execution({.threads = 1});
   const Photograph photograph = random_photograph(320, 240, 1);
   MethodParameters parameters = parameters_with(0.2, 5);
   for (const PriorSmoothing smoothing : {PriorSmoothing::kSum, PriorSmoothing::kMaximum}) {
@@ -217,7 +198,7 @@ TEST(EdgeWeightLevels, TakeWhatIsPlanned) {
     parameters.edge_diffusion = smoothing == PriorSmoothing::kSum ? 4 : 0;
     parameters.final_iterations = 2;
     EdgeWeightLevels levels;
-    levels.prepare(photograph, parameters, execution);
+    levels.prepare(photograph, parameters, execution());
     const auto held = static_cast<double>(levels.held_bytes());
     const auto planned = static_cast<double>(edge_weight_bytes(parameters, 320 * 240));
     EXPECT_LE(held, 1.1 * planned);  // rows are padded
@@ -226,5 +207,4 @@ TEST(EdgeWeightLevels, TakeWhatIsPlanned) {
   EXPECT_EQ(edge_weight_bytes(parameters_with(1, 5), 320 * 240), 0U);
 }
 
-}  // namespace edge_weights_test
-}  // namespace vantage
+}  // namespace vantage::edge_weights_test

@@ -1,15 +1,9 @@
 #include "engine/matching/levels/energy_format.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-
 #include "engine/matching/options/method_rules.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace energy_format_test {
+namespace vantage::energy_format_test {
 
 using kernels::FixedEnergy;
 using kernels::kMaxEnergy;
@@ -106,5 +100,4 @@ TEST(EnergyFormat, OfThePresetsIsTheFinest) {
   EXPECT_EQ(format.ceiling(), 3125);  // 256 · ln(1/5e-6 − 1)
 }
 
-}  // namespace energy_format_test
-}  // namespace vantage
+}  // namespace vantage::energy_format_test

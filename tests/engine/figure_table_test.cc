@@ -1,18 +1,10 @@
 #include "engine/figures/figure_table.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <set>
-
-#include "engine/error.h"
 #include "engine/evaluation/method_comparison.h"
 #include "engine/figures/figure_images.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace figure_table_test {
-
-using testing::HasSubstr;
+namespace vantage::figure_table_test {
 
 std::vector<std::string> keys_of(std::string_view name) {
   std::vector<std::string> keys;
@@ -24,12 +16,7 @@ std::vector<std::string> keys_of(std::string_view name) {
 
 std::string refusal_of(const std::vector<const BookFigure*>& figures,
                        const FigureSettings& settings) {
-  try {
-    check_settings(figures, settings);
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { check_settings(figures, settings); });
 }
 
 TEST(FigureTable, ListsEveryFigureOnceInTheOrderOfTheBook) {
@@ -97,14 +84,12 @@ TEST(FigureImages, StandInsScaleWithTheirWidth) {
     EXPECT_EQ(images->right.width(), images->left.width());
     EXPECT_EQ(images->baselines.size(), images->more.size() + 1);
     // The truth lies in the range to search, and visible pixels agree with it in both images.
-    for (int y = 0; y < images->left_truth->height(); ++y) {
-      for (int x = 0; x < images->left_truth->width(); ++x) {
-        const float d = images->left_truth->at(x, y);
-        ASSERT_GE(d, static_cast<float>(images->disparities.min));
-        ASSERT_LE(d, static_cast<float>(images->disparities.max));
-        const bool visible = images->left_visible->at(x, y) != 0;
-        ASSERT_TRUE(!visible || static_cast<float>(x) - d > -1);
-      }
+    for (const auto [x, y] : positions_of(*images->left_truth)) {
+      const float d = images->left_truth->at(x, y);
+      ASSERT_GE(d, static_cast<float>(images->disparities.min));
+      ASSERT_LE(d, static_cast<float>(images->disparities.max));
+      const bool visible = images->left_visible->at(x, y) != 0;
+      ASSERT_TRUE(!visible || static_cast<float>(x) - d > -1);
     }
   }
 }
@@ -118,5 +103,4 @@ TEST(FigureImages, GivenImagesTakeTheirPlace) {
   EXPECT_EQ(images.get(), &given);
 }
 
-}  // namespace figure_table_test
-}  // namespace vantage
+}  // namespace vantage::figure_table_test

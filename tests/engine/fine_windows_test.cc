@@ -1,21 +1,10 @@
 // The finest levels of a search of whole images, in windows (EQUATIONS §3.13).
 #include "engine/matching/search/coarse_to_fine/fine_windows.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <utility>
-
-#include "engine/error.h"
-#include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace fine_windows_test {
-
-using test::identical;
+namespace vantage::fine_windows_test {
 
 MatchOptions options_of(DisparityRange range, int window_levels) {
   MatchOptions options;
@@ -34,40 +23,29 @@ MatchOptions options_of(DisparityRange range, int window_levels) {
   return options;
 }
 
-DisparityMaps matched(const test::PhotographPair& pair, const MatchOptions& options,
-                      const MatchRequest& request = {},
-                      const ExecutionOptions& how = {.threads = 2}) {
-  Execution execution(how);
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(pair.left, pair.right, request, maps);
-  return maps;
-}
-
 /// Share of pixels whose disparities differ by more than half a pixel, or are known in one map.
 double share_of_differences(const DisparityMap& a, const DisparityMap& b) {
   int different = 0;
-  for (int y = 0; y < a.height(); ++y) {
-    for (int x = 0; x < a.width(); ++x) {
-      const bool are_near = std::isnan(a.at(x, y)) ? std::isnan(b.at(x, y))
-                                                   : std::fabs(a.at(x, y) - b.at(x, y)) <= 0.5F;
-      different += are_near ? 0 : 1;
-    }
+  for (const auto [x, y] : positions_of(a)) {
+    const bool are_near = std::isnan(a.at(x, y)) ? std::isnan(b.at(x, y))
+                                                 : std::fabs(a.at(x, y) - b.at(x, y)) <= 0.5F;
+    different += are_near ? 0 : 1;
   }
   return static_cast<double>(different) / (a.width() * a.height());
 }
 
 // A window then holds all candidates: formats and the weight of level 1 are what differs.
 TEST(FineWindows, NearlyEqualTheSearchOfAllOfEightCandidates) {
-  const auto pair = test::textured_pair(131, 77, {-2, 5}, test::PixelKind::kGrey8, 3);
+  const auto pair = textured_pair(131, 77, {-2, 5}, PixelKind::kGrey8, 3);
   for (const int thresholds : {1, 3}) {
     MatchOptions all = options_of({-2, 5}, 0);
     all.parameters.census_thresholds = thresholds;
     all.parameters.candidate_blocks = 0;
-    const DisparityMaps expected = matched(pair, all);
+    const DisparityMaps expected = maps_of(pair, all);
     for (const int window_levels : {1, 2}) {
       MatchOptions options = all;
       options.parameters.window_levels = window_levels;
-      const DisparityMaps maps = matched(pair, options);
+      const DisparityMaps maps = maps_of(pair, options);
       for (const Side side : {Side::kLeft, Side::kRight}) {
         EXPECT_LT(share_of_differences(maps.of(side).disparity_px, expected.of(side).disparity_px),
                   window_levels == 1 ? 0.005 : 0.02)
@@ -78,7 +56,7 @@ TEST(FineWindows, NearlyEqualTheSearchOfAllOfEightCandidates) {
 }
 
 TEST(FineWindows, AreIdenticalForAnyExecutionAndRequest) {
-  const auto pair = test::textured_pair(117, 71, {-3, 40}, test::PixelKind::kGrey8, 4);
+  const auto pair = textured_pair(117, 71, {-3, 40}, PixelKind::kGrey8, 4);
   DisparityMap prior_px(117, 71);
   prior_px.fill(7);
   for (const int window_levels : {1, 2}) {
@@ -91,17 +69,17 @@ TEST(FineWindows, AreIdenticalForAnyExecutionAndRequest) {
       if (has_prior) {
         request.prior = {prior_px.view(), prior_px.view(), 0.5};
       }
-      const DisparityMaps expected = matched(
-          pair, options, request, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-      const DisparityMaps maps = matched(pair, options, request,
-                                         {.threads = 3, .strip_width_px = 33, .band_height_px = 9});
+      const DisparityMaps expected = maps_of(
+          pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial}, request);
+      const DisparityMaps maps = maps_of(
+          pair, options, {.threads = 3, .strip_width_px = 33, .band_height_px = 9}, request);
       for (const Side side : {Side::kLeft, Side::kRight}) {
         EXPECT_TRUE(identical(maps.of(side).disparity_px, expected.of(side).disparity_px));
         EXPECT_TRUE(identical(maps.of(side).confidence, expected.of(side).confidence));
       }
       request.right = false;
-      EXPECT_TRUE(
-          identical(matched(pair, options, request).left.disparity_px, expected.left.disparity_px));
+      EXPECT_TRUE(identical(maps_of(pair, options, {.threads = 2}, request).left.disparity_px,
+                            expected.left.disparity_px));
     }
   }
 }
@@ -113,12 +91,13 @@ TEST(FineWindows, PriorPullsToItsDisparities) {
     image.fill(90);
     return Photograph{std::move(image)};
   };
-  const test::PhotographPair pair{grey(), grey()};
+  const PhotographPair pair{grey(), grey()};
   DisparityMap prior_px(64, 48);
   prior_px.fill(11);
   const MatchRequest request{.prior = {prior_px.view(), prior_px.view(), 1}};
   for (const int window_levels : {1, 2}) {
-    const DisparityMaps maps = matched(pair, options_of({0, 20}, window_levels), request);
+    const DisparityMaps maps =
+        maps_of(pair, options_of({0, 20}, window_levels), {.threads = 2}, request);
     EXPECT_NEAR(maps.left.disparity_px.at(40, 20), 11, 0.5) << window_levels;
     EXPECT_NEAR(maps.right.disparity_px.at(20, 20), 11, 0.5) << window_levels;
   }
@@ -152,5 +131,4 @@ TEST(FineWindows, PresetsDropThemWhereTheyCannotBe) {
   EXPECT_THROW(options.validate(), UsageError);
 }
 
-}  // namespace fine_windows_test
-}  // namespace vantage
+}  // namespace vantage::fine_windows_test

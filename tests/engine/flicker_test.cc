@@ -1,22 +1,11 @@
 #include "engine/sequence/flicker.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
-#include <limits>
-#include <random>
-#include <vector>
-
-#include "engine/error.h"
-
-namespace vantage {
-namespace flicker_test {
+namespace vantage::flicker_test {
 
 constexpr int kWidth = 61;
 constexpr int kHeight = 37;
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
 struct MadeUpFrame {
   Photograph left;
@@ -35,22 +24,18 @@ MadeUpFrame make_frame(int frame, const std::vector<double>& views_x) {
   made.map.resize(kWidth, kHeight);
   std::mt19937 still(1);
   std::mt19937 random(static_cast<unsigned>(100 + frame));
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const auto level = static_cast<std::uint8_t>(still() % 200);
-      const bool changes = x >= 25 && x < 31 && y >= 10 && y < 19;
-      left.at(x, y) = changes ? static_cast<std::uint8_t>(random()) : level;
-      made.map.at(x, y) = random() % 30 == 0 ? kUnknown
-                                             : 4 + static_cast<float>(y / 10) +
-                                                   static_cast<float>(random() % 4) / 2;
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    const auto level = static_cast<std::uint8_t>(still() % 200);
+    const bool changes = x >= 25 && x < 31 && y >= 10 && y < 19;
+    left.at(x, y) = changes ? static_cast<std::uint8_t>(random()) : level;
+    made.map.at(x, y) = random() % 30 == 0
+                            ? kUnknown
+                            : 4 + static_cast<float>(y / 10) + static_cast<float>(random() % 4) / 2;
   }
   for (std::size_t v = 0; v < views_x.size(); ++v) {
     Image<std::uint8_t> view(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        view.at(x, y) = static_cast<std::uint8_t>(random() % 9 + 40 * v);
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      view.at(x, y) = static_cast<std::uint8_t>(random() % 9 + 40 * v);
     }
     made.views.push_back({std::move(view)});
   }
@@ -140,10 +125,8 @@ FlickerSums plain_sums(const MadeUpFrame& a, const MadeUpFrame& b,
   }
   const auto mean = [](const Image<std::uint8_t>& image) {
     double sum = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        sum += image.at(x, y);
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      sum += image.at(x, y);
     }
     return sum / (kWidth * kHeight);
   };
@@ -157,18 +140,17 @@ FlickerSums plain_sums(const MadeUpFrame& a, const MadeUpFrame& b,
 
 TEST(FlickerMeter, FollowsTheDefinitions) {
   const std::vector<double> views_x = {0.5, -0.75, 1.5, 0};
-  Execution execution({.threads = 3});
   Execution serial({.executor = scheduler::ExecutorKind::kSerial});
   FlickerMeter meter(3);
   FlickerMeter other_meter(3);
   FlickerSums nothing;
   nothing.clear(views_x.size());
   MadeUpFrame before = make_frame(0, views_x);
-  EXPECT_EQ(add(meter, before, views_x, execution), nothing);
+  EXPECT_EQ(add(meter, before, views_x, execution()), nothing);
   EXPECT_EQ(add(other_meter, before, views_x, serial), nothing);
   for (int frame = 1; frame < 4; ++frame) {
     MadeUpFrame now = make_frame(frame, views_x);
-    const FlickerSums sums = add(meter, now, views_x, execution);
+    const FlickerSums sums = add(meter, now, views_x, execution());
     const FlickerSums expected = plain_sums(before, now, views_x);
     for (std::size_t v = 0; v < views_x.size(); ++v) {
       EXPECT_EQ(sums.views[v].compared, expected.views[v].compared) << v;
@@ -184,45 +166,42 @@ TEST(FlickerMeter, FollowsTheDefinitions) {
 }
 
 TEST(FlickerMeter, FramesOfOneScene) {
-  Execution execution({});
   FlickerMeter meter(3);
   const MadeUpFrame frame = make_frame(0, {0.5});
-  add(meter, frame, {0.5}, execution);
-  FlickerSums sums = add(meter, frame, {0.5}, execution);
+  add(meter, frame, {0.5}, execution());
+  FlickerSums sums = add(meter, frame, {0.5}, execution());
   EXPECT_EQ(sums.still, kWidth * kHeight);
   EXPECT_GT(sums.compared, 0);
   EXPECT_EQ(sums.disparity_change, 0);
   EXPECT_EQ(sums.views[0].grey_change, 0);
   EXPECT_EQ(sums.views[0].brightness_jump, 0);
   // A view from elsewhere is another view.
-  sums = add(meter, frame, {0.25}, execution);
+  sums = add(meter, frame, {0.25}, execution());
   EXPECT_GT(sums.compared, 0);
   EXPECT_EQ(sums.views[0], ViewFlickerSums{});
   meter.restart();
-  EXPECT_EQ(add(meter, frame, {0.25}, execution).frames, 0);
-  EXPECT_EQ(add(meter, frame, {0.25}, execution).frames, 1);
+  EXPECT_EQ(add(meter, frame, {0.25}, execution()).frames, 0);
+  EXPECT_EQ(add(meter, frame, {0.25}, execution()).frames, 1);
 }
 
 TEST(FlickerMeter, WhatCannotBeCompared) {
-  Execution execution({});
   FlickerMeter meter(3);
   const MadeUpFrame frame = make_frame(0, {});
-  add(meter, frame, {}, execution);
+  add(meter, frame, {}, execution());
   Photograph small{Image<std::uint8_t>(5, 4)};
   std::get<Image<std::uint8_t>>(small.pixels).fill(7);
-  EXPECT_EQ(meter.add(small, {}, {}, execution).frames, 0);
-  const FlickerSums sums = meter.add(small, {}, {}, execution);
+  EXPECT_EQ(meter.add(small, {}, {}, execution()).frames, 0);
+  const FlickerSums sums = meter.add(small, {}, {}, execution());
   EXPECT_EQ(sums.still, 20);
   EXPECT_EQ(sums.compared, 0);
   EXPECT_EQ(sums.mean_disparity_change_px(), 0);
-  EXPECT_THROW(meter.add(small, frame.map.view(), {}, execution), Error);
+  EXPECT_THROW(meter.add(small, frame.map.view(), {}, execution()), Error);
   const ViewOfFrame view{BaselinePosition{0.5, 0}, &frame.left};
-  EXPECT_THROW(meter.add(small, {}, {&view, 1}, execution), Error);
+  EXPECT_THROW(meter.add(small, {}, {&view, 1}, execution()), Error);
   EXPECT_THROW(FlickerMeter(-1), UsageError);
 }
 
 TEST(FlickerMeter, CamerasMayHaveASizeOfTheirOwn) {
-  Execution execution({});
   FlickerMeter meter(3);
   const MadeUpFrame frame = make_frame(0, {});
   Photograph view{Image<std::uint8_t>(10, 6)};
@@ -230,7 +209,7 @@ TEST(FlickerMeter, CamerasMayHaveASizeOfTheirOwn) {
   const auto sums_at = [&](std::uint8_t level, const ViewPose& pose) {
     levels.fill(level);
     const ViewOfFrame of_frame{pose, &view};
-    return meter.add(frame.left, frame.map.view(), {&of_frame, 1}, execution);
+    return meter.add(frame.left, frame.map.view(), {&of_frame, 1}, execution());
   };
   PosedCamera camera;
   sums_at(100, camera);
@@ -243,11 +222,10 @@ TEST(FlickerMeter, CamerasMayHaveASizeOfTheirOwn) {
 
 TEST(FlickerSums, AddUpInAnyOrder) {
   const std::vector<double> views_x = {0.5};
-  Execution execution({});
   FlickerMeter meter(3);
   std::vector<FlickerSums> frames;
   for (int frame = 0; frame < 4; ++frame) {
-    frames.push_back(add(meter, make_frame(frame, views_x), views_x, execution));
+    frames.push_back(add(meter, make_frame(frame, views_x), views_x, execution()));
   }
   FlickerSums forward;
   FlickerSums backward;
@@ -269,5 +247,4 @@ TEST(FlickerSums, AddUpInAnyOrder) {
   EXPECT_THROW(forward.add(two), Error);
 }
 
-}  // namespace flicker_test
-}  // namespace vantage
+}  // namespace vantage::flicker_test

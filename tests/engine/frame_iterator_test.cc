@@ -1,24 +1,11 @@
 #include "engine/sequence/frame_iterator.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <chrono>
-#include <numeric>
-#include <thread>
-
-#include "engine/error.h"
 #include "engine/io/maps/map_io.h"
 #include "scheduler/interruption.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/made_up_pairs.h"
 
-namespace vantage {
-namespace frame_iterator_test {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::frame_iterator_test {
 
 class FrameIteratorTest : public testing::Test {
  protected:
@@ -102,8 +89,7 @@ TEST_F(FrameIteratorTest, FramesDoNotDependOnTheExecution) {
 TEST_F(FrameIteratorTest, NoMoreFramesAreComputedThanInFlight) {
   std::atomic<int> fetched{0};
   pairs_.after_fetch = [&] { ++fetched; };
-  Execution execution({.threads = 3});
-  FrameIterator iterator(options_, run_of(pairs_, 3), first(10), execution);
+  FrameIterator iterator(options_, run_of(pairs_, 3), first(10), execution());
   const auto waits_for = [&](int count) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
     while (fetched < count && std::chrono::steady_clock::now() < deadline) {
@@ -141,11 +127,9 @@ TEST_F(FrameIteratorTest, LeavingEndsTheWork) {
   options_.match.method = MatchMethod::kDiffusion;
   options_.match.parameters.window_px.reset();
   options_.match.parameters.iterations = 10000;
-  Execution execution({.threads = 2});
-  FrameIterator iterator(options_, run_of(pairs_, 2), first(10), execution);
+  FrameIterator iterator(options_, run_of(pairs_, 2), first(10), execution());
   const scheduler::InterruptibleScope scope([] { return true; });
   EXPECT_THROW(iterator.next(), scheduler::Interrupted);
 }
 
-}  // namespace frame_iterator_test
-}  // namespace vantage
+}  // namespace vantage::frame_iterator_test

@@ -1,18 +1,9 @@
 #include "engine/sequence/frame_numbering.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "engine/io/video/image_sequence.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace frame_numbering_test {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
+namespace vantage::frame_numbering_test {
 
 /// Files that need not exist, named "l/12.png".
 ListedImages numbered(const std::string& folder, const std::vector<long long>& numbers) {
@@ -117,5 +108,4 @@ TEST(FrameNumbering, NumbersThatDifferFromTheStart) {
                           "l/3.png is paired with r/14.png from pair 3 on"));
 }
 
-}  // namespace frame_numbering_test
-}  // namespace vantage
+}  // namespace vantage::frame_numbering_test

@@ -1,13 +1,8 @@
 #include "engine/io/video/frame_rate.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <string>
-#include <utility>
-#include <vector>
-
-namespace vantage {
-namespace frame_rate_test {
+namespace vantage::frame_rate_test {
 
 std::string parsed(const std::string& text) {
   const auto rate = parse_frame_rate(text);
@@ -76,5 +71,4 @@ TEST(FrameRate, RatesPerSecondAndText) {
   }
 }
 
-}  // namespace frame_rate_test
-}  // namespace vantage
+}  // namespace vantage::frame_rate_test

@@ -1,19 +1,9 @@
 #include "engine/sequence/frame_reuse.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <utility>
-
-#include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace frame_reuse_test {
+namespace vantage::frame_reuse_test {
 
 using Bytes = Image<std::uint8_t>;
 
@@ -46,12 +36,10 @@ Pair pair_with_square(int square_x, unsigned seed = 1) {
   const Bytes square = texture();
   const auto view = [&](int shift_of_wall, int shift_of_square) {
     Bytes image(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const int u = x + shift_of_square - square_x;
-        const bool is_near = square_x >= 0 && u >= 0 && u < 48 && y >= 70 && y < 118;
-        image.at(x, y) = is_near ? square.at(u, y) : wall.at(x + shift_of_wall, y);
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      const int u = x + shift_of_square - square_x;
+      const bool is_near = square_x >= 0 && u >= 0 && u < 48 && y >= 70 && y < 118;
+      image.at(x, y) = is_near ? square.at(u, y) : wall.at(x + shift_of_wall, y);
     }
     return Photograph{std::move(image)};
   };
@@ -81,16 +69,14 @@ class FrameReuseTest : public ::testing::TestWithParam<MatchPreset> {
   static double share_right(const DisparityMap& map, int square_x) {
     int right = 0;
     int all = 0;
-    for (int y = 8; y < kHeight - 8; ++y) {
-      for (int x = 40; x < kWidth - 8; ++x) {
-        const bool is_near = x >= square_x && x < square_x + 48 && y >= 70 && y < 118;
-        const bool is_hidden =
-            !is_near && x >= square_x - kNear && x < square_x && y >= 70 && y < 118;
-        if (!is_hidden) {
-          ++all;
-          const int truth = is_near ? kNear : kFar;
-          right += std::abs(map.at(x, y) - static_cast<float>(truth)) < 1 ? 1 : 0;
-        }
+    for (const auto [x, y] : positions_of({40, kWidth - 8}, {8, kHeight - 8})) {
+      const bool is_near = x >= square_x && x < square_x + 48 && y >= 70 && y < 118;
+      const bool is_hidden =
+          !is_near && x >= square_x - kNear && x < square_x && y >= 70 && y < 118;
+      if (!is_hidden) {
+        ++all;
+        const int truth = is_near ? kNear : kFar;
+        right += std::abs(map.at(x, y) - static_cast<float>(truth)) < 1 ? 1 : 0;
       }
     }
     return static_cast<double>(right) / all;
@@ -109,8 +95,8 @@ TEST_P(FrameReuseTest, TheFirstFrameIsSearchedAndUnchangedOnesStay) {
   EXPECT_FALSE(report_.searched_share);
   for (int frame = 0; frame <= kFrames; ++frame) {
     const DisparityMaps maps = next(pair);
-    EXPECT_TRUE(test::identical(maps, expected)) << frame;
-    EXPECT_TRUE(test::identical(maps.left.unmatched, expected.left.unmatched)) << frame;
+    EXPECT_TRUE(identical(maps, expected)) << frame;
+    EXPECT_TRUE(identical(maps.left.unmatched, expected.left.unmatched)) << frame;
     if (frame == 0) {
       EXPECT_EQ(report_.searched_share, 1);
     } else {
@@ -146,11 +132,11 @@ TEST_P(FrameReuseTest, AfterACutAllIsSearched) {
   const DisparityMaps maps = next(after);
   EXPECT_EQ(report_.searched_share, 1);
   const DisparityMaps expected = match(after, false);
-  EXPECT_TRUE(test::identical(maps, expected));
+  EXPECT_TRUE(identical(maps, expected));
   // Its maps were not kept, those of the next frame are.
-  EXPECT_TRUE(test::identical(next(after), expected));
+  EXPECT_TRUE(identical(next(after), expected));
   EXPECT_EQ(report_.searched_share, 1);
-  EXPECT_TRUE(test::identical(next(after), expected));
+  EXPECT_TRUE(identical(next(after), expected));
   EXPECT_LT(*report_.searched_share, 0.3);
 }
 
@@ -168,7 +154,7 @@ TEST_P(FrameReuseTest, PairsThatMovedCanBeMatchedLater) {
   DeferredMatch none;
   look(before, none, maps);
   EXPECT_FALSE(none.is_pending);
-  EXPECT_TRUE(test::identical(maps, match(before, false)));
+  EXPECT_TRUE(identical(maps, match(before, false)));
   DisparityMaps maps_of_moved;
   DeferredMatch deferred;
   look(moved, deferred, maps_of_moved);
@@ -180,12 +166,12 @@ TEST_P(FrameReuseTest, PairsThatMovedCanBeMatchedLater) {
   EXPECT_TRUE(deferred_after.is_pending);
   look(after, none, maps);
   EXPECT_FALSE(none.is_pending) << "does not move";
-  EXPECT_TRUE(test::identical(maps, match(after, false)));
+  EXPECT_TRUE(identical(maps, match(after, false)));
   matcher_.match(moved.left, moved.right, {.deferred = &deferred}, maps_of_moved, &report);
   EXPECT_FALSE(deferred.is_pending);
   EXPECT_EQ(report.searched_share, 1);
-  EXPECT_TRUE(test::identical(maps_of_moved, match(moved, false)));
-  EXPECT_TRUE(test::identical(next(after), match(after, false)));
+  EXPECT_TRUE(identical(maps_of_moved, match(moved, false)));
+  EXPECT_TRUE(identical(next(after), match(after, false)));
   EXPECT_LT(*report_.searched_share, 0.3) << "kept the maps of the frame before";
 }
 
@@ -194,10 +180,8 @@ TEST_P(FrameReuseTest, TilesWhosePartnersChangedAreSearched) {
   next(pair);
   const auto& searched = reuse_.of(Side::kLeft).searched;
   constexpr int kTilePx = 2 * TileMask::kSidePx;
-  for (int y = 70; y < 118; ++y) {
-    for (int x = 170; x < 190; ++x) {
-      std::get<Bytes>(pair.right.pixels).at(x, y) = static_cast<std::uint8_t>(x * y % 251);
-    }
+  for (const auto [x, y] : positions_of({170, 190}, {70, 118})) {
+    std::get<Bytes>(pair.right.pixels).at(x, y) = static_cast<std::uint8_t>(x * y % 251);
   }
   next(pair);
   EXPECT_TRUE(searched.at((180 + kFar) / kTilePx, 90 / kTilePx));
@@ -209,10 +193,8 @@ TEST_P(FrameReuseTest, SlowChangesAddUp) {
   const auto brighter = [](Pair pair, int levels) {
     for (Photograph* photograph : {&pair.left, &pair.right}) {
       auto& image = std::get<Bytes>(photograph->pixels);
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          image.at(x, y) = static_cast<std::uint8_t>(std::min(255, image.at(x, y) + levels));
-        }
+      for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+        image.at(x, y) = static_cast<std::uint8_t>(std::min(255, image.at(x, y) + levels));
       }
     }
     return pair;
@@ -248,8 +230,8 @@ TEST_P(FrameReuseTest, ImagesOfAnotherSizeAndOtherMapsStartAgain) {
   };
   const Pair whole = pair_with_square(100);
   const Pair half{lower_half(whole.left), lower_half(whole.right)};
-  EXPECT_TRUE(test::identical(next(half), match(half, false)));
-  EXPECT_TRUE(test::identical(next(whole), match(whole, false)));
+  EXPECT_TRUE(identical(next(half), match(half, false)));
+  EXPECT_TRUE(identical(next(whole), match(whole, false)));
 }
 
 TEST_P(FrameReuseTest, ResultsDoNotDependOnTheExecution) {
@@ -271,21 +253,21 @@ TEST_P(FrameReuseTest, ResultsDoNotDependOnTheExecution) {
   };
   const DisparityMaps expected =
       maps_of({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-  EXPECT_TRUE(test::identical(maps_of({.threads = 3}), expected));
-  EXPECT_TRUE(test::identical(maps_of({.threads = 2, .strip_width_px = 11, .band_height_px = 5}),
-                              expected));
+  EXPECT_TRUE(identical(maps_of({.threads = 3}), expected));
+  EXPECT_TRUE(
+      identical(maps_of({.threads = 2, .strip_width_px = 11, .band_height_px = 5}), expected));
   // Whose levels would be in bands without frames before.
-  EXPECT_TRUE(test::identical(maps_of({.threads = 2, .level_memory_bytes = 1}), expected));
+  EXPECT_TRUE(identical(maps_of({.threads = 2, .level_memory_bytes = 1}), expected));
 }
 
 TEST_P(FrameReuseTest, TheLeftMapAloneStaysToo) {
   const Pair pair = pair_with_square(120);
   const DisparityMap expected = match(pair, false, false).left.disparity_px.copy();
   for (int frame = 0; frame <= kFrames; ++frame) {
-    EXPECT_TRUE(test::identical(next(pair, false).left.disparity_px, expected)) << frame;
+    EXPECT_TRUE(identical(next(pair, false).left.disparity_px, expected)) << frame;
   }
   const DisparityMaps both = match(pair, false);
-  EXPECT_TRUE(test::identical(next(pair), both));
+  EXPECT_TRUE(identical(next(pair), both));
   EXPECT_EQ(report_.searched_share, 1);
 }
 
@@ -295,23 +277,20 @@ INSTANTIATE_TEST_SUITE_P(Presets, FrameReuseTest,
 
 TEST(FrameReuse, RefusesMethodsWithoutCoarseLevels) {
   const Pair pair = pair_with_square(120);
-  Execution execution({.threads = 1});
-  FrameReuse reuse(3, execution);
+  FrameReuse reuse(3, execution());
   const auto match = [&](MatchMethod method) {
     MatchOptions options;
     options.method = method;
     options.disparities = {0, 3};
     DisparityMaps maps;
-    StereoMatcher(options, execution).match(pair.left, pair.right, {.previous = &reuse}, maps);
+    StereoMatcher(options, execution()).match(pair.left, pair.right, {.previous = &reuse}, maps);
   };
   EXPECT_THROW(match(MatchMethod::kSsd), UsageError);
   EXPECT_THROW(match(MatchMethod::kBayes), UsageError);
 }
 
 TEST(FrameReuse, RefusesThresholdsOutsideGreyLevels) {
-  Execution execution({.threads = 1});
-  EXPECT_THROW(FrameReuse(-1, execution), UsageError);
+  EXPECT_THROW(FrameReuse(-1, execution()), UsageError);
 }
 
-}  // namespace frame_reuse_test
-}  // namespace vantage
+}  // namespace vantage::frame_reuse_test

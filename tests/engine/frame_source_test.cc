@@ -1,30 +1,11 @@
 #include "engine/io/video/frame_source.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/numbered_names.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/frame_test_support.h"
 
-namespace vantage {
-namespace frame_source_test {
-
-using test::error_of;
-using test::put_image;
-using test::put_text;
-using test::put_video;
-using test::value_of;
-using test::values_of;
-using ::testing::HasSubstr;
+namespace vantage::frame_source_test {
 
 TEST(FrameSource, AFolderIsReadInNaturalOrder) {
   const TemporaryFolder folder;
@@ -180,7 +161,7 @@ void expect_to_skip_everywhere(const std::string& spec) {
       if (outcome) {
         const Outcome& expected = outcomes[static_cast<std::size_t>(to)];
         EXPECT_EQ(outcome->is_frame, expected.is_frame) << from << " " << to;
-        EXPECT_TRUE(test::same(outcome->frame, expected.frame)) << from << " " << to;
+        EXPECT_TRUE(same(outcome->frame, expected.frame)) << from << " " << to;
       }
     }
   }
@@ -188,7 +169,7 @@ void expect_to_skip_everywhere(const std::string& spec) {
 
 TEST(FrameSource, SkipsToAnyFrame) {
   const TemporaryFolder folder;
-  test::put_images(folder / "images", {0, 1, 2, 3});
+  put_images(folder / "images", {0, 1, 2, 3});
   expect_to_skip_everywhere(folder / "images");
   expect_to_skip_everywhere(folder / "images/%06d.png");
   put_video(folder / "v.mp4", {10, 60, 110, 160, 210});
@@ -200,12 +181,12 @@ TEST(FrameSource, BehindDamageAllFramesOfAVideoAreBad) {
   constexpr int kFrames = 8;
   VideoWriter writer(folder / "v.mp4", 64, 64, {});
   for (unsigned i = 0; i < kFrames; ++i) {
-    writer.write(test::noise<std::uint8_t>(64, 64, 3, i));
+    writer.write(noise<std::uint8_t>(64, 64, 3, i));
   }
   writer.finish();
-  std::vector<std::uint8_t> bytes = test::bytes_of(folder / "v.mp4");
+  std::vector<std::uint8_t> bytes = bytes_of(folder / "v.mp4");
   std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), 2000, 0);
-  test::put_bytes(folder / "v.mp4", bytes);
+  put_bytes(folder / "v.mp4", bytes);
   const auto source = open_frame_source(folder / "v.mp4");
   ASSERT_EQ(source->frame_count(), kFrames);
   std::vector<std::string> problems;
@@ -229,7 +210,7 @@ TEST(FrameSource, BehindDamageAllFramesOfAVideoAreBad) {
 TEST(FrameSource, TheIdentityTellsWhetherFilesAreTheSame) {
   const TemporaryFolder folder;
   const std::string images = folder / "images";
-  test::put_images(images, {0, 1, -1, 3});
+  put_images(images, {0, 1, -1, 3});
   const auto identity_of = [](const std::string& spec) {
     return open_frame_source(spec)->identity();
   };
@@ -350,5 +331,4 @@ TEST(NaturalOrder, CountsNumbersAndIsAStrictTotalOrder) {
   }
 }
 
-}  // namespace frame_source_test
-}  // namespace vantage
+}  // namespace vantage::frame_source_test

@@ -1,25 +1,17 @@
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/libav_scaler.h"
 #include "engine/io/video/video_io.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
 extern "C" {
 #include <libavutil/frame.h>
 #include <libavutil/pixfmt.h>
 }
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// One value everywhere.
 inline Photograph plain_photograph(int width, int height, int value) {
@@ -79,4 +71,4 @@ inline std::vector<int> values_of(FrameSource& source) {
   return values;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

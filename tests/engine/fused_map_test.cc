@@ -1,17 +1,8 @@
 #include "engine/scene_graph/fused_map.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-#include <cstring>
-#include <limits>
-#include <random>
-#include <vector>
-
-namespace vantage {
-namespace fused_map_test {
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+namespace vantage::fused_map_test {
 
 struct Opinion {
   float disparity_px;
@@ -21,7 +12,6 @@ struct Opinion {
 };
 
 float fused(const std::vector<Opinion>& opinions, double length = 1) {
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   std::vector<DisparityMap> maps;
   std::vector<Mask> masks;
   std::vector<MapOfEdge> edges;
@@ -36,7 +26,7 @@ float fused(const std::vector<Opinion>& opinions, double length = 1) {
                      .is_own = opinion.is_own});
   }
   DisparityMap result(1, 1);
-  fuse_maps(edges, length, 1.0, result.view(), execution);
+  fuse_maps(edges, length, 1.0, result.view(), execution());
   return result.at(0, 0);
 }
 
@@ -78,11 +68,9 @@ TEST(FusedMap, EqualForAnyThreadsAndOrder) {
   for (int k = 0; k < 4; ++k) {
     DisparityMap& map = maps.emplace_back(width, height);
     Mask& mask = masks.emplace_back(width, height);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        map.at(x, y) = static_cast<float>(random() % 64) / 8;
-        mask.at(x, y) = random() % 4 == 0 ? 255 : 0;
-      }
+    for (const auto [x, y] : positions_of(width, height)) {
+      map.at(x, y) = static_cast<float>(random() % 64) / 8;
+      mask.at(x, y) = random() % 4 == 0 ? 255 : 0;
     }
     edges.push_back({.disparity_px = map.view(),
                      .is_unmatched = mask.view(),
@@ -105,5 +93,4 @@ TEST(FusedMap, EqualForAnyThreadsAndOrder) {
   EXPECT_EQ(fuse(2), expected);
 }
 
-}  // namespace fused_map_test
-}  // namespace vantage
+}  // namespace vantage::fused_map_test

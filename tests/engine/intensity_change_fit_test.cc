@@ -1,13 +1,8 @@
 #include "engine/matching/estimation/intensity_change_fit.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-#include <random>
-#include <vector>
-
-namespace vantage {
-namespace intensity_change_fit_test {
+namespace vantage::intensity_change_fit_test {
 
 struct Line {
   double gain;
@@ -79,5 +74,4 @@ TEST(RobustSigma, IsThatOfTheGaussianWhateverTheOutliers) {
   EXPECT_FLOAT_EQ(static_cast<float>(robust_sigma(one)), 3 * 1.4826F);
 }
 
-}  // namespace intensity_change_fit_test
-}  // namespace vantage
+}  // namespace vantage::intensity_change_fit_test

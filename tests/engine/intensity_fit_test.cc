@@ -1,13 +1,8 @@
 #include "engine/synthesis/intensity_fit.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cstddef>
-#include <vector>
-
-namespace vantage {
-namespace intensity_fit_test {
+namespace vantage::intensity_fit_test {
 
 kernels::IntensitySums sums_of(const std::vector<double>& left, const std::vector<double>& right) {
   kernels::IntensitySums sums;
@@ -65,5 +60,4 @@ TEST(FitChannels, AlphaHasTheIdentity) {
   }
 }
 
-}  // namespace intensity_fit_test
-}  // namespace vantage
+}  // namespace vantage::intensity_fit_test

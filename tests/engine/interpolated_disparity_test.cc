@@ -1,14 +1,8 @@
 #include "engine/scene_graph/cloud_geometry.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-#include <limits>
-
-namespace vantage {
-namespace interpolated_disparity_test {
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+namespace vantage::interpolated_disparity_test {
 
 DisparityMap two_by_two(float upper_left, float upper_right, float lower_left, float lower_right) {
   DisparityMap map(2, 2);
@@ -41,5 +35,4 @@ TEST(InterpolatedDisparity, OnePixelIsThereEverywhere) {
   EXPECT_EQ(interpolated_disparity(map.view(), 0, 0), 5);
 }
 
-}  // namespace interpolated_disparity_test
-}  // namespace vantage
+}  // namespace vantage::interpolated_disparity_test

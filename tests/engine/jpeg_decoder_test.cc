@@ -1,29 +1,17 @@
 #include "engine/io/images/jpeg_decoder.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <random>
-#include <vector>
 
 #include <jpeglib.h>  // needs <cstdio> before it
 
 #include "engine/io/images/photograph_io.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace jpeg_decoder_test {
+namespace vantage::jpeg_decoder_test {
 
 using Bytes = std::vector<std::uint8_t>;
-using test::error_of;
-using test::put_bytes;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 /// How a file is coded.
 struct Coding {
@@ -169,5 +157,4 @@ TEST(JpegDecoder, RefusesFewBytesThatWouldTakeMuchMemory) {
   }
 }
 
-}  // namespace jpeg_decoder_test
-}  // namespace vantage
+}  // namespace vantage::jpeg_decoder_test

@@ -1,9 +1,8 @@
 #include "engine/refinement/kept_refinement.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace kept_refinement_test {
+namespace vantage::kept_refinement_test {
 
 constexpr int kWidth = 4 * TileMask::kSidePx;
 constexpr int kHeight = TileMask::kSidePx + 3;
@@ -87,5 +86,4 @@ TEST_F(KeptRefinementTest, NothingIsKeptAfterARestart) {
   EXPECT_TRUE(kept_.refined_px().empty());
 }
 
-}  // namespace kept_refinement_test
-}  // namespace vantage
+}  // namespace vantage::kept_refinement_test

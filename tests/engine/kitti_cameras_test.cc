@@ -1,12 +1,8 @@
 #include "engine/rectification/kitti_cameras.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <filesystem>
-#include <vector>
-
-namespace vantage {
-namespace {
+namespace vantage::kitti_cameras_test {
 
 std::optional<KittiCameras> of(std::vector<std::filesystem::path> images) {
   return kitti_cameras_of(images);
@@ -41,5 +37,4 @@ TEST(KittiCamerasOf, OtherNamesSayNothing) {
   EXPECT_EQ(of({"image_2/x.png", "poses.csv"}), KittiCameras::kColour);
 }
 
-}  // namespace
-}  // namespace vantage
+}  // namespace vantage::kitti_cameras_test

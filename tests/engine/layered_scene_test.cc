@@ -1,27 +1,13 @@
 #include "engine/generation/layered_scene.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstring>
-#include <map>
-#include <vector>
 
-#include "engine/error.h"
-
-namespace vantage {
-namespace layered_scene_test {
+namespace vantage::layered_scene_test {
 
 constexpr SceneView kLeft{0, 0};
 constexpr SceneView kRight{1, 0};
-
-Execution& threads() {
-  static Execution execution({.threads = 2});
-  return execution;
-}
 
 LayeredSceneOptions small(int width = 80, int height = 60) {
   LayeredSceneOptions options;
@@ -47,10 +33,8 @@ bool equal(const Image<T>& a, const Image<T>& b) {
 
 double mean_difference(const SceneRendering& a, const SceneRendering& b) {
   double sum = 0;
-  for (int y = 0; y < a.image.height(); ++y) {
-    for (int x = 0; x < 3 * a.image.width(); ++x) {
-      sum += std::abs(bytes_of(a).row(y)[x] - bytes_of(b).row(y)[x]);
-    }
+  for (const auto [x, y] : positions_of(3 * a.image.width(), a.image.height())) {
+    sum += std::abs(bytes_of(a).row(y)[x] - bytes_of(b).row(y)[x]);
   }
   return sum / (3.0 * a.image.width() * a.image.height());
 }
@@ -65,7 +49,7 @@ double interpolated(const Image<std::uint8_t>& image, double x, int y, int chann
 }
 
 TEST(LayeredScene, DisparityIsFocalLengthOverDepth) {
-  const LayeredScene scene(small(), threads());
+  const LayeredScene scene(small(), execution());
   const double f = scene.focal_length_px();
   for (const SceneView view : {kLeft, kRight, SceneView{0.37, -0.4}}) {
     const SceneRendering rendering = scene.render(view, 7);
@@ -83,7 +67,7 @@ TEST(LayeredScene, DisparityIsFocalLengthOverDepth) {
 
 // Equation (3.5): p − d · (B − A) is the same surface point in view B, or B sees a nearer one.
 TEST(LayeredScene, WarpedPixelsMeetTheSameSurfacePointUnlessOccluded) {
-  const LayeredScene scene(small(), threads());
+  const LayeredScene scene(small(), execution());
   struct Pair {
     SceneView from, in;
   };
@@ -94,25 +78,23 @@ TEST(LayeredScene, WarpedPixelsMeetTheSameSurfacePointUnlessOccluded) {
       const Mask occluded = scene.occlusion(pair.from, pair.in, frame);
       int visible = 0;
       int hidden = 0;
-      for (int y = 0; y < 60; ++y) {
-        for (int x = 0; x < 80; ++x) {
-          const ScenePoint point = scene.point_at(pair.from, frame, x, y);
-          const double disparity = scene.focal_length_px() / point.z;
-          const double x_in = x - disparity * (pair.in.x - pair.from.x);
-          const double y_in = y - disparity * (pair.in.y - pair.from.y);
-          const bool in_frame = x_in >= -0.5 && x_in < 79.5 && y_in >= -0.5 && y_in < 59.5;
-          const ScenePoint met = scene.point_at(pair.in, frame, x_in, y_in);
-          if (occluded.at(x, y) == 0) {
-            ++visible;
-            ASSERT_TRUE(in_frame);
-            ASSERT_EQ(met.surface, point.surface) << x << ' ' << y;
-            ASSERT_NEAR(met.x, point.x, 1e-6 * point.z);
-            ASSERT_NEAR(met.y, point.y, 1e-6 * point.z);
-            ASSERT_NEAR(met.z, point.z, 1e-6 * point.z);
-          } else if (in_frame) {
-            ++hidden;
-            ASSERT_LT(met.z, point.z);
-          }
+      for (const auto [x, y] : positions_of(80, 60)) {
+        const ScenePoint point = scene.point_at(pair.from, frame, x, y);
+        const double disparity = scene.focal_length_px() / point.z;
+        const double x_in = x - disparity * (pair.in.x - pair.from.x);
+        const double y_in = y - disparity * (pair.in.y - pair.from.y);
+        const bool in_frame = x_in >= -0.5 && x_in < 79.5 && y_in >= -0.5 && y_in < 59.5;
+        const ScenePoint met = scene.point_at(pair.in, frame, x_in, y_in);
+        if (occluded.at(x, y) == 0) {
+          ++visible;
+          ASSERT_TRUE(in_frame);
+          ASSERT_EQ(met.surface, point.surface) << x << ' ' << y;
+          ASSERT_NEAR(met.x, point.x, 1e-6 * point.z);
+          ASSERT_NEAR(met.y, point.y, 1e-6 * point.z);
+          ASSERT_NEAR(met.z, point.z, 1e-6 * point.z);
+        } else if (in_frame) {
+          ++hidden;
+          ASSERT_LT(met.z, point.z);
         }
       }
       EXPECT_GT(visible, 3000);
@@ -124,28 +106,26 @@ TEST(LayeredScene, WarpedPixelsMeetTheSameSurfacePointUnlessOccluded) {
 // Occlusion once more, without rays: a point is hidden when the other view's disparity map is
 // clearly nearer at its place. Rounding to pixels leaves doubt along edges.
 TEST(LayeredScene, OcclusionAgreesWithDisparityMaps) {
-  const LayeredScene scene(small(320, 240), threads());
+  const LayeredScene scene(small(320, 240), execution());
   const SceneRendering left = scene.render(kLeft, 3);
   const SceneRendering right = scene.render(kRight, 3);
   const Mask occluded = scene.occlusion(kLeft, kRight, 3);
   int agreements = 0;
   int hidden = 0;
-  for (int y = 0; y < 240; ++y) {
-    for (int x = 0; x < 320; ++x) {
-      const float disparity = left.disparity.at(x, y);
-      const int partner = static_cast<int>(std::lround(static_cast<float>(x) - disparity));
-      const bool seen =
-          partner >= 0 && partner < 320 && right.disparity.at(partner, y) < disparity + 0.5F;
-      agreements += seen == (occluded.at(x, y) == 0) ? 1 : 0;
-      hidden += seen ? 0 : 1;
-    }
+  for (const auto [x, y] : positions_of(320, 240)) {
+    const float disparity = left.disparity.at(x, y);
+    const int partner = static_cast<int>(std::lround(static_cast<float>(x) - disparity));
+    const bool seen =
+        partner >= 0 && partner < 320 && right.disparity.at(partner, y) < disparity + 0.5F;
+    agreements += seen == (occluded.at(x, y) == 0) ? 1 : 0;
+    hidden += seen ? 0 : 1;
   }
   EXPECT_GT(hidden, 2000);
   EXPECT_GT(agreements, 320 * 240 * 0.99);
 }
 
 TEST(LayeredScene, NothingIsOccludedInItsOwnView) {
-  const LayeredScene scene(small(61, 47), threads());
+  const LayeredScene scene(small(61, 47), execution());
   const Mask occluded = scene.occlusion(kRight, kRight, 5);
   for (int y = 0; y < 47; ++y) {
     EXPECT_EQ(std::count(occluded.row(y), occluded.row(y) + 61, 0), 61);
@@ -155,7 +135,7 @@ TEST(LayeredScene, NothingIsOccludedInItsOwnView) {
 TEST(LayeredScene, ViewsShowTheSameColoursAtWarpedPositions) {
   LayeredSceneOptions options = small(320, 240);
   options.samples_per_side = 2;
-  const LayeredScene scene(options, threads());
+  const LayeredScene scene(options, execution());
   const SceneRendering left = scene.render(kLeft, 20);
   for (const double view_x : {0.5, 1.0}) {
     const SceneRendering other = scene.render({view_x, 0}, 20);
@@ -190,7 +170,7 @@ TEST(LayeredScene, ViewsShowTheSameColoursAtWarpedPositions) {
 TEST(LayeredScene, BoardsAreFlatAndOfOneColour) {
   LayeredSceneOptions options = small(160, 120);
   options.has_boards = true;
-  const LayeredScene scene(options, threads());
+  const LayeredScene scene(options, execution());
   for (const SceneView view : {kLeft, kRight}) {
     const SceneRendering rendering = scene.render(view, 5);
     struct Board {
@@ -200,23 +180,21 @@ TEST(LayeredScene, BoardsAreFlatAndOfOneColour) {
       std::array<std::uint8_t, 3> colour = {};
     };
     std::map<int, Board> boards;
-    for (int y = 0; y < 120; ++y) {
-      for (int x = 0; x < 160; ++x) {
-        if (rendering.uniform.at(x, y) == 0) {
-          continue;
-        }
-        Board& board = boards[scene.point_at(view, 5, x, y).surface];
-        const Eigen::Vector3d at(x, y, 1);
-        const auto disparity = static_cast<double>(rendering.disparity.at(x, y));
-        board.normal_equations += at * at.transpose();
-        board.right_side += disparity * at;
-        board.pixels.emplace_back(x, y, disparity);
-        for (int c = 0; c < 3; ++c) {
-          const std::uint8_t level = bytes_of(rendering).at(x, y, c);
-          auto& of_board = board.colour[static_cast<std::size_t>(c)];
-          of_board = board.pixels.size() == 1 ? level : of_board;
-          ASSERT_EQ(level, of_board) << x << ' ' << y;
-        }
+    for (const auto [x, y] : positions_of(160, 120)) {
+      if (rendering.uniform.at(x, y) == 0) {
+        continue;
+      }
+      Board& board = boards[scene.point_at(view, 5, x, y).surface];
+      const Eigen::Vector3d at(x, y, 1);
+      const auto disparity = static_cast<double>(rendering.disparity.at(x, y));
+      board.normal_equations += at * at.transpose();
+      board.right_side += disparity * at;
+      board.pixels.emplace_back(x, y, disparity);
+      for (int c = 0; c < 3; ++c) {
+        const std::uint8_t level = bytes_of(rendering).at(x, y, c);
+        auto& of_board = board.colour[static_cast<std::size_t>(c)];
+        of_board = board.pixels.size() == 1 ? level : of_board;
+        ASSERT_EQ(level, of_board) << x << ' ' << y;
       }
     }
     ASSERT_EQ(boards.size(), 4U);
@@ -276,14 +254,12 @@ double sphericity(const std::vector<Eigen::Vector3d>& points) {
 }
 
 TEST(LayeredScene, SurfacesAreExactPlanesSpheresAndOtherCurves) {
-  const LayeredScene scene(small(), threads());
+  const LayeredScene scene(small(), execution());
   std::map<int, std::vector<Eigen::Vector3d>> points;
   for (const SceneView view : {kLeft, SceneView{1.5, 0.2}}) {
-    for (int y = 0; y < 120; ++y) {
-      for (int x = 0; x < 160; ++x) {
-        const ScenePoint point = scene.point_at(view, 11, x / 2.0, y / 2.0);
-        points[point.surface].emplace_back(point.x, point.y, point.z);
-      }
+    for (const auto [x, y] : positions_of(160, 120)) {
+      const ScenePoint point = scene.point_at(view, 11, x / 2.0, y / 2.0);
+      points[point.surface].emplace_back(point.x, point.y, point.z);
     }
   }
   EXPECT_EQ(points.size(), 11U);
@@ -314,7 +290,7 @@ TEST(LayeredScene, DisparitiesStayInTheirRange) {
   narrow.far_disparity_px = 6;
   narrow.near_disparity_px = 9;
   for (const LayeredSceneOptions& options : {small(), small(50, 90), narrow}) {
-    const LayeredScene scene(options, threads());
+    const LayeredScene scene(options, execution());
     float lowest = 1e9F;
     float highest = 0;
     for (int frame = 0; frame < 120; frame += 12) {
@@ -337,7 +313,7 @@ TEST(LayeredScene, DisparitiesStayInTheirRange) {
 TEST(LayeredScene, SameForAnyExecution) {
   LayeredSceneOptions options = small(67, 53);
   options.noise_sigma = 3;
-  const LayeredScene expected(options, threads());
+  const LayeredScene expected(options, execution());
   const SceneRendering rendering = expected.render({0.4, 0}, 9);
   const Mask occluded = expected.occlusion(kLeft, kRight, 9);
   for (const auto executor : {scheduler::ExecutorKind::kSerial, scheduler::ExecutorKind::kOpenMp,
@@ -354,7 +330,7 @@ TEST(LayeredScene, SameForAnyExecution) {
 TEST(LayeredScene, MovesSmoothlyAndPeriodically) {
   LayeredSceneOptions options = small();
   options.frames_per_cycle = 60;
-  const LayeredScene scene(options, threads());
+  const LayeredScene scene(options, execution());
   const SceneRendering first = scene.render(kLeft, 0);
   EXPECT_TRUE(equal(bytes_of(first), bytes_of(scene.render(kLeft, 60))));
   const double step = mean_difference(first, scene.render(kLeft, 1));
@@ -364,22 +340,20 @@ TEST(LayeredScene, MovesSmoothlyAndPeriodically) {
 
 TEST(LayeredScene, RightCameraGainAndNoise) {
   LayeredSceneOptions options = small();
-  const SceneRendering plain = LayeredScene(options, threads()).render(kRight, 0);
+  const SceneRendering plain = LayeredScene(options, execution()).render(kRight, 0);
   options.right_gain = 0.8;
   options.right_offset = 10;
-  const LayeredScene dimmed(options, threads());
+  const LayeredScene dimmed(options, execution());
   const SceneRendering right = dimmed.render(kRight, 0);
-  for (int y = 0; y < 60; ++y) {
-    for (int x = 0; x < 80; ++x) {
-      ASSERT_NEAR(bytes_of(right).at(x, y, 1), 0.8 * bytes_of(plain).at(x, y, 1) + 10, 1);
-    }
+  for (const auto [x, y] : positions_of(80, 60)) {
+    ASSERT_NEAR(bytes_of(right).at(x, y, 1), 0.8 * bytes_of(plain).at(x, y, 1) + 10, 1);
   }
   EXPECT_TRUE(equal(bytes_of(dimmed.render(kLeft, 0)),
-                    bytes_of(LayeredScene(small(), threads()).render(kLeft, 0))));
+                    bytes_of(LayeredScene(small(), execution()).render(kLeft, 0))));
 
   options = small();
   options.noise_sigma = 4;
-  const LayeredScene noisy(options, threads());
+  const LayeredScene noisy(options, execution());
   const SceneRendering noisy_right = noisy.render(kRight, 0);
   // E|n| = σ √(2/π); rounding and the rare clipping change it little.
   EXPECT_NEAR(mean_difference(noisy_right, plain), 4 * std::sqrt(2 / std::acos(-1.0)), 0.2);
@@ -389,9 +363,9 @@ TEST(LayeredScene, RightCameraGainAndNoise) {
 
 TEST(LayeredScene, SeedsChangeTexturesOnly) {
   LayeredSceneOptions options = small();
-  const SceneRendering one = LayeredScene(options, threads()).render(kLeft, 0);
+  const SceneRendering one = LayeredScene(options, execution()).render(kLeft, 0);
   options.seed = 2;
-  const SceneRendering two = LayeredScene(options, threads()).render(kLeft, 0);
+  const SceneRendering two = LayeredScene(options, execution()).render(kLeft, 0);
   EXPECT_GT(mean_difference(one, two), 5);
   EXPECT_TRUE(equal(one.disparity, two.disparity));
 }
@@ -403,16 +377,14 @@ TEST(LayeredScene, AwkwardSizes) {
   for (const Size size : {Size{1, 1}, {1, 31}, {37, 1}, {2, 3}, {13, 101}}) {
     LayeredSceneOptions options = small(size.width, size.height);
     options.samples_per_side = 2;
-    const LayeredScene scene(options, threads());
+    const LayeredScene scene(options, execution());
     const SceneRendering rendering = scene.render({0.5, 0}, 0);
     EXPECT_EQ(rendering.image.width(), size.width);
     EXPECT_EQ(rendering.image.height(), size.height);
     EXPECT_EQ(rendering.image.channels(), 3);
-    for (int y = 0; y < size.height; ++y) {
-      for (int x = 0; x < size.width; ++x) {
-        ASSERT_TRUE(std::isfinite(rendering.disparity.at(x, y)));
-        ASSERT_GT(rendering.disparity.at(x, y), 0);
-      }
+    for (const auto [x, y] : positions_of(size.width, size.height)) {
+      ASSERT_TRUE(std::isfinite(rendering.disparity.at(x, y)));
+      ASSERT_GT(rendering.disparity.at(x, y), 0);
     }
     EXPECT_EQ(scene.occlusion(kLeft, kRight, 0).width(), size.width);
   }
@@ -433,9 +405,9 @@ TEST(LayeredScene, RejectsWrongOptions) {
         with([](Options& o) { o.frames_per_cycle = 0; }),
         with([](Options& o) { o.noise_sigma = std::nan(""); }),
         with([](Options& o) { o.right_gain = 0; })}) {
-    EXPECT_THROW(LayeredScene(wrong, threads()), UsageError);
+    EXPECT_THROW(LayeredScene(wrong, execution()), UsageError);
   }
-  const LayeredScene scene(small(), threads());
+  const LayeredScene scene(small(), execution());
   EXPECT_THROW((void)scene.render(kLeft, -1), UsageError);
   EXPECT_THROW((void)scene.render({std::nan(""), 0}, 0), UsageError);
   EXPECT_THROW((void)scene.occlusion(kLeft, {0, 17}, 0), UsageError);
@@ -443,8 +415,7 @@ TEST(LayeredScene, RejectsWrongOptions) {
 
 // From one place everything is seen along the same rays, whatever way the camera is turned.
 TEST(LayeredScene, ATurnedCameraSeesTheSamePoints) {
-  Execution execution({});
-  const LayeredScene scene({.width_px = 97, .height_px = 61}, execution);
+  const LayeredScene scene({.width_px = 97, .height_px = 61}, execution());
   const SceneView view{0.5, -0.25};
   PosedCamera turned = scene.camera(view);
   turned.matrix << 140, 1.5, 30, 0, 130, 22, 0, 0, 1;
@@ -458,28 +429,25 @@ TEST(LayeredScene, ATurnedCameraSeesTheSamePoints) {
   ASSERT_EQ(rendering.disparity.width(), 83);
   ASSERT_EQ(rendering.disparity.height(), 47);
   const Mask hidden = scene.occlusion(turned, scene.camera(view), 3);
-  for (int y = 0; y < 47; ++y) {
-    for (int x = 0; x < 83; ++x) {
-      const Eigen::Vector3d ray = turned.matrix.inverse() * Eigen::Vector3d(x, y, 1);
-      const double depth = scene.focal_length_px() / rendering.disparity.at(x, y);
-      const Eigen::Vector3d relative = depth * (turned.rotation.transpose() * ray);
-      const Eigen::Vector2d position(
-          (97 - 1) / 2.0 + scene.focal_length_px() * relative.x() / relative.z(),
-          (61 - 1) / 2.0 + scene.focal_length_px() * relative.y() / relative.z());
-      const ScenePoint point = scene.point_at(view, 3, position.x(), position.y());
-      EXPECT_NEAR(point.x - 0.5, relative.x(), 1e-4 * depth);
-      EXPECT_NEAR(point.y + 0.25, relative.y(), 1e-4 * depth);
-      EXPECT_NEAR(point.z, relative.z(), 1e-4 * depth);
-      const bool is_in_frame = position.x() >= -0.5 && position.x() < 96.5 &&
-                               position.y() >= -0.5 && position.y() < 60.5;
-      EXPECT_EQ(hidden.at(x, y), is_in_frame ? 0 : 255) << x << ' ' << y;
-    }
+  for (const auto [x, y] : positions_of(83, 47)) {
+    const Eigen::Vector3d ray = turned.matrix.inverse() * Eigen::Vector3d(x, y, 1);
+    const double depth = scene.focal_length_px() / rendering.disparity.at(x, y);
+    const Eigen::Vector3d relative = depth * (turned.rotation.transpose() * ray);
+    const Eigen::Vector2d position(
+        (97 - 1) / 2.0 + scene.focal_length_px() * relative.x() / relative.z(),
+        (61 - 1) / 2.0 + scene.focal_length_px() * relative.y() / relative.z());
+    const ScenePoint point = scene.point_at(view, 3, position.x(), position.y());
+    EXPECT_NEAR(point.x - 0.5, relative.x(), 1e-4 * depth);
+    EXPECT_NEAR(point.y + 0.25, relative.y(), 1e-4 * depth);
+    EXPECT_NEAR(point.z, relative.z(), 1e-4 * depth);
+    const bool is_in_frame =
+        position.x() >= -0.5 && position.x() < 96.5 && position.y() >= -0.5 && position.y() < 60.5;
+    EXPECT_EQ(hidden.at(x, y), is_in_frame ? 0 : 255) << x << ' ' << y;
   }
 }
 
 TEST(LayeredScene, IsBlackAndUnknownWhereACameraLooksPastIt) {
-  Execution execution({});
-  const LayeredScene scene({.width_px = 33, .height_px = 21}, execution);
+  const LayeredScene scene({.width_px = 33, .height_px = 21}, execution());
   PosedCamera backward = scene.camera({0, 0});
   backward.rotation = Eigen::AngleAxisd(3.14, Eigen::Vector3d::UnitY()).toRotationMatrix();
   const SceneRendering rendering = scene.render(backward, 0);
@@ -488,5 +456,4 @@ TEST(LayeredScene, IsBlackAndUnknownWhereACameraLooksPastIt) {
   EXPECT_EQ(image.at(16, 3, 0), 0);
 }
 
-}  // namespace layered_scene_test
-}  // namespace vantage
+}  // namespace vantage::layered_scene_test

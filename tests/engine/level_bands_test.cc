@@ -1,20 +1,14 @@
 // Costs of coarse levels in bands of rows: the same maps.
 #include "engine/matching/levels/level_bands.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "engine/image/memory_use.h"
 #include "engine/matching/levels/level_extents.h"
 #include "engine/matching/search_table.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace level_bands_test {
+namespace vantage::level_bands_test {
 
 constexpr int kWidth = 203;
 constexpr int kHeight = 149;
@@ -27,13 +21,15 @@ MatchOptions preset(MatchPreset of) {
   return options;
 }
 
-MatchOptions method(MatchMethod of, void (*set)(MethodOverrides&)) {
+MatchOptions method(MatchMethod of, MethodOverrides parameters) {
   MatchOptions options;
   options.method = of;
   options.disparities = kRange;
+  options.parameters = std::move(parameters);
   options.parameters.levels = 5;
-  options.parameters.iterations = 3;
-  set(options.parameters);
+  if (of != MatchMethod::kSsd) {
+    options.parameters.iterations = 3;
+  }
   return options;
 }
 
@@ -45,8 +41,7 @@ struct Matched {
 /// Each map alone: together they would share costs, which are not in bands then.
 Matched match(MatchOptions options, std::size_t level_bytes, int threads) {
   options.raw = true;
-  const auto [left, right] =
-      test::textured_pair(kWidth, kHeight, kRange, test::PixelKind::kGrey8, 7);
+  const auto [left, right] = textured_pair(kWidth, kHeight, kRange, PixelKind::kGrey8, 7);
   Execution execution({.threads = threads, .level_memory_bytes = level_bytes});
   const StereoMatcher matcher(options, execution);
   Matched result;
@@ -67,27 +62,21 @@ TEST(LevelBands, MapsAreTheSame) {
       preset(MatchPreset::kFast),
       preset(MatchPreset::kBalanced),
       preset(MatchPreset::kQuality),
-      method(MatchMethod::kBayes, [](MethodOverrides& p) { p.prior = Prior::kQuadratic; }),
-      method(MatchMethod::kBayes,
-             [](MethodOverrides& p) {
-               p.cost = MatchCost::kRayCensus;
-               p.prior_smoothing = PriorSmoothing::kMaximum;
-               p.candidate_blocks = 1;
-               p.pruned_levels = 3;
-               p.window_levels = 2;
-             }),
-      method(MatchMethod::kMembrane, [](MethodOverrides& p) { p.edge_weight = 0.3; }),
-      method(MatchMethod::kSsd, [](MethodOverrides& p) {
-        p.iterations.reset();
-        p.window_px = 7;
-      })};
+      method(MatchMethod::kBayes, {.prior = Prior::kQuadratic}),
+      method(MatchMethod::kBayes, {.cost = MatchCost::kRayCensus,
+                                   .candidate_blocks = 1,
+                                   .pruned_levels = 3,
+                                   .window_levels = 2,
+                                   .prior_smoothing = PriorSmoothing::kMaximum}),
+      method(MatchMethod::kMembrane, {.edge_weight = 0.3}),
+      method(MatchMethod::kSsd, {.window_px = 7})};
   cases[1].parameters.candidate_step_px = 0.5;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Matched whole = match(cases[i], kDefaultLevelBytes, 2);
     EXPECT_GT(whole.level_bytes, 0U);
     for (const auto& [level_bytes, threads] : {std::pair<std::size_t, int>{1, 3}, {200'000, 1}}) {
       const Matched banded = match(cases[i], level_bytes, threads);
-      EXPECT_TRUE(test::identical(banded.maps, whole.maps)) << i << " " << level_bytes;
+      EXPECT_TRUE(identical(banded.maps, whole.maps)) << i << " " << level_bytes;
       EXPECT_LT(banded.level_bytes, whole.level_bytes / 8) << i;
     }
   }
@@ -133,5 +122,4 @@ TEST(LevelBands, EstimateTellsWhatDoesNotFit) {
       search_plan(options(MatchPreset::kBalanced), size).bytes() + 8 * kGiB);
 }
 
-}  // namespace level_bands_test
-}  // namespace vantage
+}  // namespace vantage::level_bands_test

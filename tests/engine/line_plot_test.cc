@@ -1,25 +1,12 @@
 #include "engine/plot/line_plot.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <limits>
-#include <sstream>
-
-#include "engine/error.h"
 #include "engine/plot/heat_map.h"
 #include "engine/plot/picture_sheet.h"
 #include "engine/plot/surface_plot.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/well_formed_xml.h"
 
-namespace vantage {
-namespace line_plot_test {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
+namespace vantage::line_plot_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -166,7 +153,7 @@ TEST(LinePlot, EverythingIsOnThePage) {
 TEST(LinePlot, RefusesUnequalNumbersOfValues) {
   LinePlot plot = noise_plot("bad");
   plot.series = {{"bad", {0, 1}, {1}}};
-  EXPECT_THAT(test::error_of([&] { draw_line_plots("", {plot}, 1); }),
+  EXPECT_THAT(error_of([&] { draw_line_plots("", {plot}, 1); }),
               HasSubstr("curve 'bad' has 2 x and 1 y"));
 }
 
@@ -184,10 +171,8 @@ TEST(HeatMap, ShowsItsExtremesAndTheMarkedPoint) {
               .x_first = -2,
               .y_first = 1,
               .values = Image<float>(5, 3)};
-  for (int y = 0; y < 3; ++y) {
-    for (int x = 0; x < 5; ++x) {
-      map.values.at(x, y) = static_cast<float>(x - y);
-    }
+  for (const auto [x, y] : positions_of(5, 3)) {
+    map.values.at(x, y) = static_cast<float>(x - y);
   }
   map.marked = {2, 1};
   std::vector<HeatMap> maps;
@@ -288,5 +273,4 @@ TEST(PictureSheet, GreyLevelsRunFromMinToMax) {
   EXPECT_EQ(picture.at(3, 0, 2), 3);
 }
 
-}  // namespace line_plot_test
-}  // namespace vantage
+}  // namespace vantage::line_plot_test

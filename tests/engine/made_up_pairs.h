@@ -1,13 +1,8 @@
 #pragma once
 
-#include <functional>
-#include <set>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/generation/book_pairs.h"
 #include "engine/sequence/pair_source.h"
+#include "tests/engine/engine_test.h"
 
 namespace vantage {
 

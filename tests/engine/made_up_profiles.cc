@@ -1,10 +1,7 @@
 #include "tests/engine/made_up_profiles.h"
+#include "tests/engine/engine_test.h"
 
 #include <fmt/format.h>
-
-#include <cmath>
-#include <cstddef>
-#include <random>
 
 namespace vantage {
 namespace {

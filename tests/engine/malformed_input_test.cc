@@ -1,23 +1,13 @@
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <random>
 
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/video_io.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace malformed_input_test {
-
-using test::bytes_of;
-using test::noise;
-using test::put_bytes;
+namespace vantage::malformed_input_test {
 
 /// Calls `read` with the file cut at every place and with bytes changed at random. It must return
 /// or throw an Error of one line that names the file; anything else ends the test, or the process.
@@ -39,8 +29,8 @@ void read_damaged(const std::filesystem::path& path, int flips,
     attempt({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)},
             "cut at " + std::to_string(size));
   }
-  std::mt19937 generator(6 + test::sample_seed());
-  for (int i = 0; i < (test::runs_everything() ? 4 * flips : flips); ++i) {
+  std::mt19937 generator(6 + sample_seed());
+  for (int i = 0; i < (runs_everything() ? 4 * flips : flips); ++i) {
     std::vector<std::uint8_t> bytes = whole;
     // Headers decide most, so every second change is near the front.
     const std::size_t range = i % 2 == 0 ? bytes.size() : std::min<std::size_t>(bytes.size(), 64);
@@ -61,10 +51,8 @@ void expect_valid(const Photograph& photograph) {
   ASSERT_TRUE(channels == 1 || channels == 3 || channels == 4) << channels;
   std::visit(
       [&](const auto& image) {
-        for (int y = 0; y < image.height(); ++y) {
-          for (int i = 0; i < image.width() * channels; ++i) {
-            ASSERT_TRUE(std::isfinite(static_cast<float>(image.row(y)[i])));
-          }
+        for (const auto [i, y] : positions_of(image.width() * channels, image.height())) {
+          ASSERT_TRUE(std::isfinite(static_cast<float>(image.row(y)[i])));
         }
       },
       photograph.pixels);
@@ -102,10 +90,8 @@ TEST_P(MalformedDisparity, IsAnErrorOrAMap) {
   write_disparity(path, map.view());
   read_damaged(path, 90, [](const auto& file) {
     const DisparityMap read = read_disparity(file);
-    for (int y = 0; y < read.height(); ++y) {
-      for (int x = 0; x < read.width(); ++x) {
-        ASSERT_FALSE(std::isinf(read.at(x, y)));
-      }
+    for (const auto [x, y] : positions_of(read)) {
+      ASSERT_FALSE(std::isinf(read.at(x, y)));
     }
   });
 }
@@ -137,11 +123,10 @@ TEST(MalformedText, IsAnErrorOrAnImage) {
   const TemporaryFolder folder;
   for (const char* text : {"P1\n3 2\n0 1 0\n1 1 0\n", "P2\n3 2\n15\n0 1 15\n3 4 5\n",
                            "P3\n1 2\n255\n0 1 255\n3 4 5\n"}) {
-    test::put_text(folder / "text.pnm", text);
+    put_text(folder / "text.pnm", text);
     read_damaged(folder / "text.pnm", 60,
                  [](const auto& file) { expect_valid(read_photograph(file)); });
   }
 }
 
-}  // namespace malformed_input_test
-}  // namespace vantage
+}  // namespace vantage::malformed_input_test

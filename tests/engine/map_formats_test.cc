@@ -1,12 +1,9 @@
 #include "engine/io/maps/map_formats.h"
 
-#include <gtest/gtest.h>
-
 #include "engine/io/maps/map_io.h"
-#include "tests/temporary_folder.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace map_formats_test {
+namespace vantage::map_formats_test {
 
 TEST(MapFormats, AreFoundByExtensionAndContent) {
   EXPECT_NE(find_map_format("a/b.PFM", MapContent::kDisparity), nullptr);
@@ -41,5 +38,4 @@ TEST(MapFormats, WriteWhatTheyCanHold) {
   }
 }
 
-}  // namespace map_formats_test
-}  // namespace vantage
+}  // namespace vantage::map_formats_test

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <random>
-#include <vector>
 
 #include "engine/rectification/feature_matches.h"
 #include "tests/engine/calibration_cases.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// Points in front of both cameras that both images show, `nearest` to `furthest` baselines away.
 inline std::vector<PointMatch> exact_matches(const StereoCalibration& rig, int width, int height,
@@ -51,4 +50,4 @@ inline void spoil(std::vector<PointMatch>& matches, int width, int height, doubl
   }
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

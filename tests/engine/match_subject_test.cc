@@ -1,18 +1,10 @@
 #include "engine/tuning/match_subject.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <string_view>
-#include <vector>
-
 #include "engine/tuning/sequence_subject.h"
 #include "engine/tuning/tuning_pair.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace match_subject_test {
+namespace vantage::match_subject_test {
 
 constexpr int kWidth = 211;
 constexpr int kHeight = 97;
@@ -26,8 +18,7 @@ class MatchSubjectTest : public ::testing::Test {
   MatchSubjectTest() {
     options_.match.disparities = {0, 31};
     options_.execution.threads = 2;
-    Execution execution({});
-    pair_ = make_tuning_pair(kWidth, kHeight, options_.match.disparities, true, execution);
+    pair_ = make_tuning_pair(kWidth, kHeight, options_.match.disparities, true, execution());
   }
 
   void use(MatchMethod method) { options_.match.method = method; }
@@ -138,8 +129,7 @@ TEST_F(MatchSubjectTest, NoSettingsChangeAResult) {
     use(method);
     DisparityMaps expected;
     {
-      Execution execution({});
-      StereoMatcher(options_.match, execution)
+      StereoMatcher(options_.match, execution())
           .match(pair_.left, pair_.right, {.confidence = true}, expected);
     }
     for (const TunedSettings& settings : odd) {
@@ -147,10 +137,9 @@ TEST_F(MatchSubjectTest, NoSettingsChangeAResult) {
       DisparityMaps maps;
       StereoMatcher(options_.match, execution)
           .match(pair_.left, pair_.right, {.confidence = true}, maps);
-      EXPECT_TRUE(test::identical(maps, expected)) << to_string(settings);
+      EXPECT_TRUE(identical(maps, expected)) << to_string(settings);
     }
   }
 }
 
-}  // namespace match_subject_test
-}  // namespace vantage
+}  // namespace vantage::match_subject_test

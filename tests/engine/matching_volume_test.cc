@@ -1,27 +1,13 @@
 // Volumes beside maps: against the plain transcription, against the winners of the map, and what
 // neither volumes nor maps may depend on.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstring>
-#include <limits>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace matching_volume_test {
-
-using test::PhotographPair;
-using test::PixelKind;
+namespace vantage::matching_volume_test {
 
 constexpr DisparityRange kRange{-3, 17};
 constexpr int kWidth = 61;
@@ -82,7 +68,7 @@ class KeptVolume final : public VolumeSink {
 };
 
 PhotographPair pair_of_test() {
-  return test::textured_pair(kWidth, kHeight, kRange, PixelKind::kColour8, 5);
+  return textured_pair(kWidth, kHeight, kRange, PixelKind::kColour8, 5);
 }
 
 DisparityMaps match_with(const MatchOptions& options, const PhotographPair& pair,
@@ -94,8 +80,8 @@ DisparityMaps match_with(const MatchOptions& options, const PhotographPair& pair
 }
 
 /// The presets, and final levels that repeat the coarser one.
-std::vector<test::MethodCase> cases_of_volumes() {
-  std::vector<test::MethodCase> cases = test::method_cases(kRange);
+std::vector<MethodCase> cases_of_volumes() {
+  std::vector<MethodCase> cases = method_cases(kRange);
   MatchOptions options = cases.front().options;
   options.method.reset();
   for (const auto& [preset, name] : {std::pair{MatchPreset::kFast, "fast"},
@@ -119,7 +105,7 @@ TEST(MatchingVolume, HoldsTheWinnersAndLeavesMapsAsTheyAre) {
   const PhotographPair pair = pair_of_test();
   Execution execution({.threads = 2, .strip_width_px = 23, .band_height_px = 9});
   Execution other({.threads = 1});
-  for (const test::MethodCase& method : cases_of_volumes()) {
+  for (const MethodCase& method : cases_of_volumes()) {
     SCOPED_TRACE(method.name);
     KeptVolume left;
     KeptVolume right;
@@ -131,9 +117,9 @@ TEST(MatchingVolume, HoldsTheWinnersAndLeavesMapsAsTheyAre) {
                     {.side = Side::kRight, .sink = &right},
                     {.side = Side::kLeft, .kind = VolumeKind::kCosts, .sink = &costs}});
     const auto plain = match_with(method.options, pair, other, {});
-    EXPECT_TRUE(test::identical(maps.left.disparity_px, plain.left.disparity_px));
-    EXPECT_TRUE(test::identical(maps.left.confidence, plain.left.confidence));
-    EXPECT_TRUE(test::identical(maps.right.disparity_px, plain.right.disparity_px));
+    EXPECT_TRUE(identical(maps.left.disparity_px, plain.left.disparity_px));
+    EXPECT_TRUE(identical(maps.left.confidence, plain.left.confidence));
+    EXPECT_TRUE(identical(maps.right.disparity_px, plain.right.disparity_px));
     match_with(method.options, pair, other, {{.side = Side::kLeft, .sink = &again}});
     EXPECT_TRUE(left.equals(again));
     EXPECT_TRUE(left.is_complete() && right.is_complete() && costs.is_complete());
@@ -141,13 +127,11 @@ TEST(MatchingVolume, HoldsTheWinnersAndLeavesMapsAsTheyAre) {
       const KeptVolume& volume = side == Side::kLeft ? left : right;
       ASSERT_EQ(volume.shape().disparities, kRange);
       int wrong = 0;
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          const float winner = maps.of(side).disparity_px.at(x, y);
-          const int best = volume.best(x, y);
-          wrong += best < 0 ? !std::isnan(winner)
-                            : winner != static_cast<float>(volume.shape().disparity_px(best));
-        }
+      for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+        const float winner = maps.of(side).disparity_px.at(x, y);
+        const int best = volume.best(x, y);
+        wrong += best < 0 ? !std::isnan(winner)
+                          : winner != static_cast<float>(volume.shape().disparity_px(best));
       }
       EXPECT_EQ(wrong, 0);
     }
@@ -156,7 +140,7 @@ TEST(MatchingVolume, HoldsTheWinnersAndLeavesMapsAsTheyAre) {
 
 /// Values agree but for rounding; `strays`: share of cells of columns where rounding decides
 /// whether diffusion stops.
-void expect_near(const KeptVolume& volume, const test::Volume& expected, double strays) {
+void expect_near(const KeptVolume& volume, const Volume& expected, double strays) {
   constexpr double kTolerance = 1e-3;
   int cells = 0;
   int wrong = 0;
@@ -177,33 +161,31 @@ void expect_near(const KeptVolume& volume, const test::Volume& expected, double 
 }
 
 TEST(MatchingVolume, EqualsThePlainTranscription) {
-  const PhotographPair pair = test::textured_pair(kWidth, kHeight, kRange, PixelKind::kGrey8, 5);
+  const PhotographPair pair = textured_pair(kWidth, kHeight, kRange, PixelKind::kGrey8, 5);
   Execution execution({.threads = 2, .strip_width_px = 19});
-  for (const test::MethodCase& method : test::method_cases(kRange)) {
+  for (const MethodCase& method : method_cases(kRange)) {
     SCOPED_TRACE(method.name);
     const MethodParameters parameters = method.options.resolved();
-    if (test::is_stepped(method) || !method.options.method) {
+    if (is_stepped(method) || !method.options.method) {
       continue;
     }
     KeptVolume cells;
     KeptVolume costs;
     match_with(method.options, pair, execution,
                {{.sink = &cells}, {.kind = VolumeKind::kCosts, .sink = &costs}});
-    expect_near(cells,
-                test::plain_aggregate(pair.left, pair.right, Side::kLeft, kRange, parameters),
+    expect_near(cells, plain_aggregate(pair.left, pair.right, Side::kLeft, kRange, parameters),
                 parameters.aggregation == Aggregation::kLocalStopping ? 0.01 : 0);
-    expect_near(costs,
-                has_likelihoods(parameters)
-                    ? test::plain_measurement_energies(pair.left, pair.right, Side::kLeft, kRange,
-                                                       parameters)
-                    : test::plain_costs(pair.left, pair.right, Side::kLeft, kRange, parameters),
-                0);
+    expect_near(
+        costs,
+        has_likelihoods(parameters)
+            ? plain_measurement_energies(pair.left, pair.right, Side::kLeft, kRange, parameters)
+            : plain_costs(pair.left, pair.right, Side::kLeft, kRange, parameters),
+        0);
   }
 }
 
 TEST(MatchingVolume, CoarseCostsAreMeansOfFineOnes) {
   const PhotographPair pair = pair_of_test();
-  Execution execution({.threads = 2});
   MatchOptions options;
   options.method = MatchMethod::kDiffusion;
   options.disparities = kRange;
@@ -211,25 +193,23 @@ TEST(MatchingVolume, CoarseCostsAreMeansOfFineOnes) {
   options.parameters.levels = 3;
   KeptVolume fine;
   KeptVolume coarse;
-  match_with(options, pair, execution,
+  match_with(options, pair, execution(),
              {{.kind = VolumeKind::kCosts, .sink = &fine},
               {.kind = VolumeKind::kCosts, .level = 1, .sink = &coarse}});
   ASSERT_EQ(coarse.shape().width_px, (kWidth + 1) / 2);
   ASSERT_EQ(coarse.shape().height_px, (kHeight + 1) / 2);
   int compared = 0;
-  for (int y = 0; y < kHeight / 2; ++y) {
-    for (int x = 0; x < kWidth / 2; ++x) {
-      for (int i = 0; i < kRange.count(); ++i) {
-        const float value = coarse.column(x, y)[i];
-        const int partner = 2 * x - (kRange.min + i);
-        const bool has_partner = partner + 1 >= 0 && partner < kWidth;
-        EXPECT_EQ(std::isnan(value), !has_partner) << x << ": " << i;
-        const float sum = fine.column(2 * x, 2 * y)[i] + fine.column(2 * x + 1, 2 * y)[i] +
-                          fine.column(2 * x, 2 * y + 1)[i] + fine.column(2 * x + 1, 2 * y + 1)[i];
-        if (!std::isnan(sum)) {
-          EXPECT_NEAR(value, sum / 4, 1e-3F * std::max(64.0F, sum));
-          ++compared;
-        }
+  for (const auto [x, y] : positions_of(kWidth / 2, kHeight / 2)) {
+    for (int i = 0; i < kRange.count(); ++i) {
+      const float value = coarse.column(x, y)[i];
+      const int partner = 2 * x - (kRange.min + i);
+      const bool has_partner = partner + 1 >= 0 && partner < kWidth;
+      EXPECT_EQ(std::isnan(value), !has_partner) << x << ": " << i;
+      const float sum = fine.column(2 * x, 2 * y)[i] + fine.column(2 * x + 1, 2 * y)[i] +
+                        fine.column(2 * x, 2 * y + 1)[i] + fine.column(2 * x + 1, 2 * y + 1)[i];
+      if (!std::isnan(sum)) {
+        EXPECT_NEAR(value, sum / 4, 1e-3F * std::max(64.0F, sum));
+        ++compared;
       }
     }
   }
@@ -237,14 +217,13 @@ TEST(MatchingVolume, CoarseCostsAreMeansOfFineOnes) {
 }
 
 TEST(MatchingVolume, ProbabilitiesOfPrunedLevelsSumToOne) {
-  const PhotographPair pair = test::textured_pair(96, 64, {0, 79}, PixelKind::kGrey8, 9);
-  Execution execution({.threads = 2});
+  const PhotographPair pair = textured_pair(96, 64, {0, 79}, PixelKind::kGrey8, 9);
   MatchOptions options;
   options.preset = MatchPreset::kBalanced;
   options.disparities = {0, 79};
   for (const int level : {0, 1, 2}) {
     KeptVolume volume;
-    match_with(options, pair, execution, {{.level = level, .sink = &volume}});
+    match_with(options, pair, execution(), {{.level = level, .sink = &volume}});
     EXPECT_EQ(volume.shape().content, VolumeContent::kProbabilities);
     const int x = volume.shape().width_px - 1;  // where all have partners
     const int y = volume.shape().height_px / 2;
@@ -277,17 +256,15 @@ TEST(MatchingVolume, TwoDimensionalSearch) {
     const auto maps = match_with(options, pair, execution, {{.sink = &volume}});
     ASSERT_EQ(volume.shape().disparities_y, options.disparities_y);
     int wrong = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const int best = volume.best(x, y);
-        const float dx = maps.left.disparity_px.at(x, y);
-        const float dy = maps.left.disparity_y_px.at(x, y);
-        wrong +=
-            best < 0
-                ? !std::isnan(dx)
-                : dx != static_cast<float>(kRange.min + best % kRange.count()) ||
-                      dy != static_cast<float>(options.disparities_y->min + best / kRange.count());
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      const int best = volume.best(x, y);
+      const float dx = maps.left.disparity_px.at(x, y);
+      const float dy = maps.left.disparity_y_px.at(x, y);
+      wrong +=
+          best < 0
+              ? !std::isnan(dx)
+              : dx != static_cast<float>(kRange.min + best % kRange.count()) ||
+                    dy != static_cast<float>(options.disparities_y->min + best / kRange.count());
     }
     EXPECT_EQ(wrong, 0);
   }
@@ -296,7 +273,7 @@ TEST(MatchingVolume, TwoDimensionalSearch) {
 TEST(MatchingVolume, IsTheSameForASelectionAlongRows) {
   const PhotographPair pair = pair_of_test();
   Execution execution({.threads = 2, .strip_width_px = 17, .band_height_px = 5});
-  for (test::MethodCase& method : test::method_cases(kRange)) {
+  for (MethodCase& method : method_cases(kRange)) {
     if (method.name != "ssd_valid" && method.name != "membrane" && method.name != "bayes" &&
         method.name != "bayes_maximum_levels" && method.name != "truncated_box") {
       continue;
@@ -319,15 +296,14 @@ TEST(MatchingVolume, IsTheSameForASelectionAlongRows) {
 
 TEST(MatchingVolume, RefusesWhatIsNotThere) {
   const PhotographPair pair = pair_of_test();
-  Execution execution({.threads = 1});
   KeptVolume volume;
   MatchOptions options;
   options.preset = MatchPreset::kBalanced;
   options.disparities = kRange;
-  EXPECT_THROW(match_with(options, pair, execution, {{.level = 10, .sink = &volume}}), UsageError);
+  EXPECT_THROW(match_with(options, pair, execution(), {{.level = 10, .sink = &volume}}),
+               UsageError);
   options.preset = MatchPreset::kRealtime;
-  EXPECT_THROW(match_with(options, pair, execution, {{.sink = &volume}}), UsageError);
+  EXPECT_THROW(match_with(options, pair, execution(), {{.sink = &volume}}), UsageError);
 }
 
-}  // namespace matching_volume_test
-}  // namespace vantage
+}  // namespace vantage::matching_volume_test

@@ -1,38 +1,21 @@
 // Matching with a prior: what it must not depend on, and what it does.
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-#include <string>
-
-#include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/simd.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace matching_with_prior_test {
+namespace vantage::matching_with_prior_test {
 
-using test::identical;
-using test::method_cases;
-using test::MethodCase;
-using test::PhotographPair;
-using test::PixelKind;
-using test::textured_pair;
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr DisparityRange kRange{-3, 17};
 
 /// Stripes: unknown, in the range with fractions, at its ends, outside.
 DisparityMap striped_prior(int width, int height) {
   DisparityMap prior(width, height);
   const float values[] = {kUnknown, 3.25F, -3, 11.5F, 17, kUnknown, 25, 8.75F};
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      prior.at(x, y) = values[(x / 5 + y / 7) % 8];
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    prior.at(x, y) = values[(x / 5 + y / 7) % 8];
   }
   return prior;
 }
@@ -43,14 +26,10 @@ DisparityMap constant_prior(int width, int height, float disparity_px) {
   return prior;
 }
 
-DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
-                      const DisparityPrior& prior,
-                      const ExecutionOptions& execution_options = {.threads = 2}) {
-  Execution execution(execution_options);
-  DisparityMaps maps;
-  StereoMatcher(options, execution)
-      .match(pair.left, pair.right, {.confidence = true, .prior = prior}, maps);
-  return maps;
+DisparityMaps maps_with(const PhotographPair& pair, const MatchOptions& options,
+                        const DisparityPrior& prior,
+                        const ExecutionOptions& execution_options = {.threads = 2}) {
+  return test::maps_of(pair, options, execution_options, {.confidence = true, .prior = prior});
 }
 
 class MatchingWithPrior : public ::testing::TestWithParam<MethodCase> {
@@ -66,8 +45,8 @@ TEST_P(MatchingWithPrior, PlansAndExecutorsGiveIdenticalResults) {
   const DisparityPrior prior{.left_px = map.view(), .right_px = map.view(), .weight = 0.7};
   options_.parameters.subpixel = Subpixel::kParabola;
   const DisparityMaps expected =
-      maps_of(pair, options_, prior, {.threads = 1, .executor = ExecutorKind::kSerial});
-  EXPECT_FALSE(identical(maps_of(pair, options_, {}), expected));
+      maps_with(pair, options_, prior, {.threads = 1, .executor = ExecutorKind::kSerial});
+  EXPECT_FALSE(identical(maps_with(pair, options_, {}), expected));
   // The executors and the plans of method_execution_test hold for these stages, too: here strips
   // of a column, with bands, and passes.
   for (const ExecutionOptions& execution :
@@ -79,7 +58,7 @@ TEST_P(MatchingWithPrior, PlansAndExecutorsGiveIdenticalResults) {
         .strip_width_px = 500,
         .band_height_px = 9,
         .iterations_per_pass = 1000}}) {
-    EXPECT_TRUE(identical(maps_of(pair, options_, prior, execution), expected))
+    EXPECT_TRUE(identical(maps_with(pair, options_, prior, execution), expected))
         << "strip " << *execution.strip_width_px;
   }
 }
@@ -98,7 +77,7 @@ TEST_P(MatchingWithPrior, InstructionSetsAgree) {
   DisparityMaps expected;
   for (const std::string& name : available_instruction_sets()) {
     force_instruction_set(name);
-    DisparityMaps maps = maps_of(pair, options_, prior);
+    DisparityMaps maps = maps_with(pair, options_, prior);
     if (expected.left.disparity_px.empty()) {
       expected = std::move(maps);
     } else {
@@ -110,25 +89,23 @@ TEST_P(MatchingWithPrior, InstructionSetsAgree) {
 
 TEST_P(MatchingWithPrior, NoPixelWithAPriorIsNoPrior) {
   const auto pair = textured_pair(37, 23, kRange, PixelKind::kGrey8, 9);
-  const DisparityMaps expected = maps_of(pair, options_, {});
+  const DisparityMaps expected = maps_with(pair, options_, {});
   for (const float nothing : {kUnknown, 18.0F, -3.5F}) {
     const DisparityMap map = constant_prior(37, 23, nothing);
     // Sums of costs in fractions are kept to another power of two.
     const DisparityMaps maps =
-        maps_of(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0.001});
+        maps_with(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0.001});
     int equal = 0;
-    for (int y = 0; y < 23; ++y) {
-      for (int x = 0; x < 37; ++x) {
-        const float wanted = expected.left.disparity_px.at(x, y);
-        const float actual = maps.left.disparity_px.at(x, y);
-        equal += std::isnan(wanted) ? std::isnan(actual) : wanted == actual;
-      }
+    for (const auto [x, y] : positions_of(37, 23)) {
+      const float wanted = expected.left.disparity_px.at(x, y);
+      const float actual = maps.left.disparity_px.at(x, y);
+      equal += std::isnan(wanted) ? std::isnan(actual) : wanted == actual;
     }
     EXPECT_GE(equal, 37 * 23 - 1) << nothing;
   }
   const DisparityMap map = striped_prior(37, 23);
   EXPECT_TRUE(identical(
-      maps_of(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0}),
+      maps_with(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0}),
       expected));
 }
 
@@ -140,9 +117,9 @@ TEST_P(MatchingWithPrior, DecidesWhereTheImagesDoNot) {
   flat.right.pixels = std::move(grey);
   const DisparityMap map = constant_prior(41, 19, 5);
   const DisparityMaps maps =
-      maps_of(flat, options_, {.left_px = map.view(), .right_px = map.view()});
+      maps_with(flat, options_, {.left_px = map.view(), .right_px = map.view()});
   const bool has_likelihoods = options_.resolved().aggregation == Aggregation::kBayes;
-  const DisparityMaps without = maps_of(flat, options_, {});
+  const DisparityMaps without = maps_with(flat, options_, {});
   for (int x = 12; x < 30; ++x) {
     const float actual = maps.left.disparity_px.at(x, 9);
     // Without any contrast a prior on energies has no unit; what rounding leaves will do.
@@ -155,17 +132,15 @@ TEST_P(MatchingWithPrior, GivesWayToTheImages) {
   // The prior is wrong everywhere by 6 pixels or more: what the images say wins nearly everywhere.
   const auto pair = textured_pair(61, 43, kRange, PixelKind::kGrey8, 10);
   options_.parameters.border = {};
-  const DisparityMaps expected = maps_of(pair, options_, {});
+  const DisparityMaps expected = maps_with(pair, options_, {});
   const DisparityMap map = constant_prior(61, 43, -3);
   const DisparityMaps maps =
-      maps_of(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0.25});
+      maps_with(pair, options_, {.left_px = map.view(), .right_px = map.view(), .weight = 0.25});
   int candidates = 0;
   int equal = 0;
-  for (int y = 5; y < 38; ++y) {
-    for (int x = 22; x < 50; ++x) {
-      candidates += std::isnan(expected.left.disparity_px.at(x, y)) ? 0 : 1;
-      equal += maps.left.disparity_px.at(x, y) == expected.left.disparity_px.at(x, y) ? 1 : 0;
-    }
+  for (const auto [x, y] : positions_of({22, 50}, {5, 38})) {
+    candidates += std::isnan(expected.left.disparity_px.at(x, y)) ? 0 : 1;
+    equal += maps.left.disparity_px.at(x, y) == expected.left.disparity_px.at(x, y) ? 1 : 0;
   }
   EXPECT_GE(equal, 0.85 * candidates);
 }
@@ -179,12 +154,13 @@ TEST(MatchingWithPriorErrors, AreNamed) {
   options.disparities = {0, 9};
   const DisparityMap map = constant_prior(31, 17, 4);
   const DisparityMap narrow = constant_prior(30, 17, 4);
-  EXPECT_THROW(maps_of(pair, options, {.left_px = map.view(), .weight = -1}), UsageError);
-  EXPECT_THROW(maps_of(pair, options, {.left_px = map.view(), .weight = 101}), UsageError);
-  EXPECT_THROW(maps_of(pair, options, {.left_px = map.view(), .weight = std::nan("")}), UsageError);
-  EXPECT_THROW(maps_of(pair, options, {.right_px = narrow.view()}), Error);
+  EXPECT_THROW(maps_with(pair, options, {.left_px = map.view(), .weight = -1}), UsageError);
+  EXPECT_THROW(maps_with(pair, options, {.left_px = map.view(), .weight = 101}), UsageError);
+  EXPECT_THROW(maps_with(pair, options, {.left_px = map.view(), .weight = std::nan("")}),
+               UsageError);
+  EXPECT_THROW(maps_with(pair, options, {.right_px = narrow.view()}), Error);
   options.disparities_y = DisparityRange{-1, 1};
-  EXPECT_THROW(maps_of(pair, options, {.left_px = map.view()}), UsageError);
+  EXPECT_THROW(maps_with(pair, options, {.left_px = map.view()}), UsageError);
 }
 
 TEST(MatchingWithPriorErrors, OneMapMayHaveNone) {
@@ -193,11 +169,10 @@ TEST(MatchingWithPriorErrors, OneMapMayHaveNone) {
   options.disparities = {0, 9};
   options.raw = true;
   const DisparityMap map = constant_prior(31, 17, 4);
-  const DisparityMaps expected = maps_of(pair, options, {});
-  const DisparityMaps maps = maps_of(pair, options, {.left_px = map.view(), .weight = 100});
+  const DisparityMaps expected = maps_with(pair, options, {});
+  const DisparityMaps maps = maps_with(pair, options, {.left_px = map.view(), .weight = 100});
   EXPECT_FALSE(identical(maps.left.disparity_px, expected.left.disparity_px));
   EXPECT_TRUE(identical(maps.right.disparity_px, expected.right.disparity_px));
 }
 
-}  // namespace matching_with_prior_test
-}  // namespace vantage
+}  // namespace vantage::matching_with_prior_test

@@ -1,21 +1,16 @@
 // The membrane's support function: the response to an impulse after many iterations is the inverse
 // Fourier transform of (6.12).
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "engine/execution.h"
 #include "engine/matching/aggregation/stage_diffusion.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_aggregation.h"
 
-namespace vantage {
-namespace membrane_response_test {
+namespace vantage::membrane_response_test {
 
 constexpr int kSide = 64;
 constexpr int kCentre = kSide / 2;
@@ -61,12 +56,9 @@ class CellSink final : public scheduler::RowStage {
 /// (6.12) sampled at the frequencies of a periodic image, transformed back.
 cv::Mat1d support_function(double beta) {
   cv::Mat2d spectrum(kSide, kSide);  // complex; a real one would be taken for packed
-  for (int v = 0; v < kSide; ++v) {
-    for (int u = 0; u < kSide; ++u) {
-      const double waves =
-          2 * std::cos(2 * CV_PI * u / kSide) + 2 * std::cos(2 * CV_PI * v / kSide);
-      spectrum(v, u) = {beta / (beta + 4 - waves), 0};
-    }
+  for (const auto [u, v] : positions_of(kSide, kSide)) {
+    const double waves = 2 * std::cos(2 * CV_PI * u / kSide) + 2 * std::cos(2 * CV_PI * v / kSide);
+    spectrum(v, u) = {beta / (beta + 4 - waves), 0};
   }
   cv::Mat1d response;
   cv::dft(spectrum, response, cv::DFT_INVERSE | cv::DFT_SCALE | cv::DFT_REAL_OUTPUT);
@@ -113,14 +105,12 @@ TEST(MembraneResponse, IsTheInverseTransformOfTheSupportFunction) {
       const std::vector<float> cells = response_of(c.lambda, c.beta, 250, 0, in_strips);
       double sum = 0;
       double worst = 0;
-      for (int y = 0; y < kSide; ++y) {
-        for (int x = 0; x < kSide; ++x) {
-          const double cell = cells[static_cast<std::size_t>(y * kSide + x)];
-          const double wanted =
-              expected((y - kCentre + kSide) % kSide, (x - kCentre + kSide) % kSide);
-          worst = std::max(worst, std::abs(cell - wanted));
-          sum += cell;
-        }
+      for (const auto [x, y] : positions_of(kSide, kSide)) {
+        const double cell = cells[static_cast<std::size_t>(y * kSide + x)];
+        const double wanted =
+            expected((y - kCentre + kSide) % kSide, (x - kCentre + kSide) % kSide);
+        worst = std::max(worst, std::abs(cell - wanted));
+        sum += cell;
       }
       EXPECT_LT(worst, 1e-6) << "lambda " << c.lambda << " beta " << c.beta;
       EXPECT_NEAR(sum, 1, 1e-5);
@@ -130,13 +120,12 @@ TEST(MembraneResponse, IsTheInverseTransformOfTheSupportFunction) {
 
 TEST(MembraneResponse, CandidatesDoNotMixAndTheOracleResponds) {
   const std::vector<float> cells = response_of(.15, .5, 60, 3, true);
-  test::Volume impulse(kSide, kSide, {0, 0}, Side::kLeft);
+  Volume impulse(kSide, kSide, {0, 0}, Side::kLeft);
   impulse.at(kCentre - 3, kCentre, 0) = 1;
-  const test::Volume expected = test::plain_membrane(impulse, .15, .5, 60);
+  const Volume expected = plain_membrane(impulse, .15, .5, 60);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     ASSERT_NEAR(cells[i], expected.cells[i], 1e-7);
   }
 }
 
-}  // namespace membrane_response_test
-}  // namespace vantage
+}  // namespace vantage::membrane_response_test

@@ -1,11 +1,8 @@
 #include "engine/evaluation/membrane_support.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include "engine/error.h"
-
-namespace vantage {
-namespace membrane_support_test {
+namespace vantage::membrane_support_test {
 
 TEST(MembraneSupport, SolvesTheDiscreteEquation) {
   // (6.10): β (δ − f) + Σ over N4 (f_n − f) = 0 at every offset.
@@ -58,5 +55,4 @@ TEST(MembraneSupport, RefusesWhatDoesNotConverge) {
   EXPECT_THROW(membrane_impulse_response(0.5, 0.15, -1, 5), UsageError);
 }
 
-}  // namespace membrane_support_test
-}  // namespace vantage
+}  // namespace vantage::membrane_support_test

@@ -1,23 +1,13 @@
 // What memory belongs to, against sums over the pixels and cells that must be there.
 #include "engine/image/memory_use.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <string>
-
 #include "engine/matching/search/coarse_to_fine/level_plan.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/frame_memory.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace memory_use_test {
-
-using test::PixelKind;
-using test::textured_pair;
+namespace vantage::memory_use_test {
 
 constexpr int kWidth = 611;
 constexpr int kHeight = 83;
@@ -159,5 +149,4 @@ TEST(MemoryUse, OfFramesIsThatOfTheirImages) {
   expect_images_of(held_bytes(slot), kPixels * (3 * (1 + 2) + 4 + 4 + 1 + 3 + 1 + 3) + 1000, 8);
 }
 
-}  // namespace memory_use_test
-}  // namespace vantage
+}  // namespace vantage::memory_use_test

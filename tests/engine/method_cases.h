@@ -1,12 +1,9 @@
 #pragma once
 
-#include <ostream>
-#include <string>
-#include <vector>
-
 #include "engine/matching/options/match_options.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// A way of matching, and a name for messages.
 struct MethodCase {
@@ -28,135 +25,102 @@ inline void PrintTo(const MethodCase& method, std::ostream* stream) { *stream <<
 
 /// The book's methods, and one of every other kind of chain: whatever is different code.
 inline std::vector<MethodCase> method_cases(DisparityRange range) {
+  struct Row {
+    const char* name;
+    MatchMethod method;
+    MethodOverrides parameters;
+  };
+  using enum MatchMethod;
+  static const Row kRows[] = {
+      {"ssd", kSsd, {}},
+      {"ssd_valid", kSsd, {.window_px = 5, .border = Border::kValid}},
+      {"truncated_box", kSsd, {.cost = MatchCost::kTruncated}},
+      {"census_box", kSsd, {.cost = MatchCost::kCensus, .window_px = 5}},
+      {"ray_census_cascade",
+       kSsd,
+       {.cost = MatchCost::kRayCensus, .aggregation = Aggregation::kBoxCascade}},
+      {"birchfield_tomasi_none",
+       kSsd,
+       {.cost = MatchCost::kBirchfieldTomasi, .aggregation = Aggregation::kNone}},
+      {"absolute_gaussian",
+       kSsd,
+       {.cost = MatchCost::kAbsolute, .aggregation = Aggregation::kGaussian}},
+      {"gradient", kGradient, {}},
+      {"gradient_octagon",
+       kGradient,
+       {.norm = GradientNorm::kOctagon, .gradient = GradientFilter::kSimoncelli5}},
+      {"diffusion", kDiffusion, {}},
+      {"membrane", kMembrane, {}},
+      {"local_stopping_margin", kLocalStopping, {.certainty = Certainty::kMargin}},
+      {"local_stopping_entropy", kLocalStopping, {.certainty = Certainty::kEntropy}},
+      {"local_stopping_evidence",
+       kLocalStopping,
+       {.cost = MatchCost::kGradient, .certainty = Certainty::kEntropy}},
+      {"bayes_planar", kBayes, {.sigma_prior = 0.1}},
+      {"bayes", kBayes, {.sigma_prior = 0.4}},
+      {"bayes_general", kBayes, {.mu = 0.3}},
+      {"bayes_impulse", kBayes, {.prior = Prior::kImpulse}},
+      {"bayes_quadratic", kBayes, {.prior = Prior::kQuadratic}},
+      {"bayes_quadratic_maximum_levels",
+       kBayes,
+       {.iterations = 3,
+        .levels = 3,
+        .final_iterations = 2,
+        .prior = Prior::kQuadratic,
+        .prior_smoothing = PriorSmoothing::kMaximum,
+        .edge_weight = 0.2}},
+      {"bayes_levels", kBayes, {.iterations = 3, .levels = 4}},
+      {"bayes_edges", kBayes, {.sigma_prior = 0.4, .edge_weight = 0.2, .edge_diffusion = 4}},
+      {"bayes_maximum", kBayes, {.sigma_prior = 0.8, .prior_smoothing = PriorSmoothing::kMaximum}},
+      {"bayes_maximum_levels",
+       kBayes,
+       {.cost = MatchCost::kRayCensus,
+        .census_thresholds = 3,
+        .iterations = 3,
+        .levels = 4,
+        .final_iterations = 1,
+        .epsilon_prior = 5e-6,
+        .prior_growth = 1.2,
+        .prior_smoothing = PriorSmoothing::kMaximum,
+        .level_weight = 0.6,
+        .edge_weight = 0.2,
+        .edge_diffusion = 2}},
+      {"bayes_edges_levels",
+       kBayes,
+       {.iterations = 3,
+        .levels = 4,
+        .final_iterations = 2,
+        .epsilon_prior = 5e-6,
+        .prior_growth = 1.2,
+        .level_weight = 0.6,
+        .edge_weight = 0.2,
+        .edge_contrast = 12}},
+      {"membrane_levels", kMembrane, {.iterations = 4, .levels = 3}},
+      {"diffusion_levels", kDiffusion, {.iterations = 4, .levels = 3}},
+      {"diffusion_edges", kDiffusion, {.edge_weight = 0.1, .edge_diffusion = 3}},
+      {"membrane_edges_levels",
+       kMembrane,
+       {.iterations = 4,
+        .levels = 3,
+        .final_iterations = 2,
+        .edge_weight = 0,
+        .edge_contrast = 12,
+        .edge_diffusion = 8}},
+      {"local_stopping_edges", kLocalStopping, {.edge_weight = 0.2, .edge_diffusion = 20}},
+      {"box_levels", kSsd, {.window_px = 5, .levels = 3}},
+      {"bayes_of_evidence", kBayes, {.cost = MatchCost::kGradient}},
+  };
   std::vector<MethodCase> cases;
-  const auto add = [&](std::string name, MatchMethod method, void (*set)(MethodOverrides & p)) {
+  for (const Row& row : kRows) {
     MatchOptions options;
-    options.method = method;
+    options.method = row.method;
     options.disparities = range;
     options.raw = true;
+    options.parameters = row.parameters;
     options.parameters.subpixel = Subpixel::kNone;
-    set(options.parameters);
-    cases.push_back({std::move(name), options});
-  };
-  add("ssd", MatchMethod::kSsd, [](MethodOverrides&) {});
-  add("ssd_valid", MatchMethod::kSsd, [](MethodOverrides& p) {
-    p.border = Border::kValid;
-    p.window_px = 5;
-  });
-  add("truncated_box", MatchMethod::kSsd,
-      [](MethodOverrides& p) { p.cost = MatchCost::kTruncated; });
-  add("census_box", MatchMethod::kSsd, [](MethodOverrides& p) {
-    p.cost = MatchCost::kCensus;
-    p.window_px = 5;
-  });
-  add("ray_census_cascade", MatchMethod::kSsd, [](MethodOverrides& p) {
-    p.cost = MatchCost::kRayCensus;
-    p.aggregation = Aggregation::kBoxCascade;
-  });
-  add("birchfield_tomasi_none", MatchMethod::kSsd, [](MethodOverrides& p) {
-    p.cost = MatchCost::kBirchfieldTomasi;
-    p.aggregation = Aggregation::kNone;
-  });
-  add("absolute_gaussian", MatchMethod::kSsd, [](MethodOverrides& p) {
-    p.cost = MatchCost::kAbsolute;
-    p.aggregation = Aggregation::kGaussian;
-  });
-  add("gradient", MatchMethod::kGradient, [](MethodOverrides&) {});
-  add("gradient_octagon", MatchMethod::kGradient, [](MethodOverrides& p) {
-    p.norm = GradientNorm::kOctagon;
-    p.gradient = GradientFilter::kSimoncelli5;
-  });
-  add("diffusion", MatchMethod::kDiffusion, [](MethodOverrides&) {});
-  add("membrane", MatchMethod::kMembrane, [](MethodOverrides&) {});
-  add("local_stopping_margin", MatchMethod::kLocalStopping,
-      [](MethodOverrides& p) { p.certainty = Certainty::kMargin; });
-  add("local_stopping_entropy", MatchMethod::kLocalStopping,
-      [](MethodOverrides& p) { p.certainty = Certainty::kEntropy; });
-  add("local_stopping_evidence", MatchMethod::kLocalStopping, [](MethodOverrides& p) {
-    p.cost = MatchCost::kGradient;
-    p.certainty = Certainty::kEntropy;
-  });
-  add("bayes_planar", MatchMethod::kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.1; });
-  add("bayes", MatchMethod::kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.4; });
-  add("bayes_general", MatchMethod::kBayes, [](MethodOverrides& p) { p.mu = 0.3; });
-  add("bayes_impulse", MatchMethod::kBayes, [](MethodOverrides& p) { p.prior = Prior::kImpulse; });
-  add("bayes_quadratic", MatchMethod::kBayes,
-      [](MethodOverrides& p) { p.prior = Prior::kQuadratic; });
-  add("bayes_quadratic_maximum_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
-    p.prior = Prior::kQuadratic;
-    p.prior_smoothing = PriorSmoothing::kMaximum;
-    p.levels = 3;
-    p.iterations = 3;
-    p.final_iterations = 2;
-    p.edge_weight = 0.2;
-  });
-  add("bayes_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
-    p.levels = 4;
-    p.iterations = 3;
-  });
-  add("bayes_edges", MatchMethod::kBayes, [](MethodOverrides& p) {
-    p.edge_weight = 0.2;
-    p.edge_diffusion = 4;
-    p.sigma_prior = 0.4;
-  });
-  add("bayes_maximum", MatchMethod::kBayes, [](MethodOverrides& p) {
-    p.prior_smoothing = PriorSmoothing::kMaximum;
-    p.sigma_prior = 0.8;
-  });
-  add("bayes_maximum_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
-    p.prior_smoothing = PriorSmoothing::kMaximum;
-    p.cost = MatchCost::kRayCensus;
-    p.census_thresholds = 3;
-    p.levels = 4;
-    p.iterations = 3;
-    p.final_iterations = 1;
-    p.edge_weight = 0.2;
-    p.edge_diffusion = 2;
-    p.prior_growth = 1.2;
-    p.level_weight = 0.6;
-    p.epsilon_prior = 5e-6;
-  });
-  add("bayes_edges_levels", MatchMethod::kBayes, [](MethodOverrides& p) {
-    p.levels = 4;
-    p.iterations = 3;
-    p.final_iterations = 2;
-    p.edge_weight = 0.2;
-    p.edge_contrast = 12;
-    p.prior_growth = 1.2;
-    p.level_weight = 0.6;
-    p.epsilon_prior = 5e-6;
-  });
-  add("membrane_levels", MatchMethod::kMembrane, [](MethodOverrides& p) {
-    p.levels = 3;
-    p.iterations = 4;
-  });
-  add("diffusion_levels", MatchMethod::kDiffusion, [](MethodOverrides& p) {
-    p.levels = 3;
-    p.iterations = 4;
-  });
-  add("diffusion_edges", MatchMethod::kDiffusion, [](MethodOverrides& p) {
-    p.edge_weight = 0.1;
-    p.edge_diffusion = 3;
-  });
-  add("membrane_edges_levels", MatchMethod::kMembrane, [](MethodOverrides& p) {
-    p.levels = 3;
-    p.iterations = 4;
-    p.final_iterations = 2;
-    p.edge_weight = 0;
-    p.edge_contrast = 12;
-    p.edge_diffusion = 8;
-  });
-  add("local_stopping_edges", MatchMethod::kLocalStopping, [](MethodOverrides& p) {
-    p.edge_weight = 0.2;
-    p.edge_diffusion = 20;
-  });
-  add("box_levels", MatchMethod::kSsd, [](MethodOverrides& p) {
-    p.levels = 3;
-    p.window_px = 5;
-  });
-  add("bayes_of_evidence", MatchMethod::kBayes,
-      [](MethodOverrides& p) { p.cost = MatchCost::kGradient; });
+    cases.push_back({row.name, options});
+  }
   return cases;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,30 +1,15 @@
 // Chains of every method, stage by stage: energies against the plain transcription, and any
 // executor against the one that stores every row of every stage.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/chain/match_chain.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace method_chain_test {
-
-using test::identical;
-using test::method_cases;
-using test::MethodCase;
-using test::PhotographPair;
-using test::PixelKind;
-using test::plain_match;
-using test::PlainMap;
-using test::textured_pair;
-using test::tolerance_of;
+namespace vantage::method_chain_test {
 
 constexpr int kWidth = 57;
 constexpr int kHeight = 39;
@@ -85,7 +70,7 @@ class MethodChain : public ::testing::TestWithParam<MethodCase> {
 };
 
 TEST_P(MethodChain, EnergiesEqualTheOracle) {
-  if (test::is_stepped(GetParam()) || GetParam().options.resolved().edge_weight < 1) {
+  if (is_stepped(GetParam()) || GetParam().options.resolved().edge_weight < 1) {
     GTEST_SKIP() << "rounded to steps, or weights that a chain alone has not: see stage_cost_test, "
                     "coarse_to_fine_test, edge_weights_test";
   }
@@ -95,23 +80,21 @@ TEST_P(MethodChain, EnergiesEqualTheOracle) {
     scheduler::run_whole_image(chain(outputs).stages());
     const PlainMap oracle =
         plain_match(photographs_.left, photographs_.right, reference, kRange, parameters_);
-    const test::Tolerance tolerance = tolerance_of(parameters_);
+    const Tolerance tolerance = tolerance_of(parameters_);
     int candidates = 0;
     int equal = 0;
     int close = 0;
     double worst = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const double expected = oracle.at(x, y).energy;
-        ASSERT_EQ(std::isnan(outputs.energy.at(x, y)), std::isnan(expected)) << x << ", " << y;
-        candidates += std::isnan(expected) ? 0 : 1;
-        if (outputs.disparity_px.at(x, y) == oracle.at(x, y).winner) {
-          ++equal;
-          const double off = std::abs(outputs.energy.at(x, y) - expected) /
-                             std::max(std::abs(expected), tolerance.floor);
-          close += off <= tolerance.energy ? 1 : 0;
-          worst = std::max(worst, off);
-        }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      const double expected = oracle.at(x, y).energy;
+      ASSERT_EQ(std::isnan(outputs.energy.at(x, y)), std::isnan(expected)) << x << ", " << y;
+      candidates += std::isnan(expected) ? 0 : 1;
+      if (outputs.disparity_px.at(x, y) == oracle.at(x, y).winner) {
+        ++equal;
+        const double off = std::abs(outputs.energy.at(x, y) - expected) /
+                           std::max(std::abs(expected), tolerance.floor);
+        close += off <= tolerance.energy ? 1 : 0;
+        worst = std::max(worst, off);
       }
     }
     EXPECT_GE(equal, tolerance.share * candidates - 1);
@@ -149,5 +132,4 @@ TEST_P(MethodChain, EveryExecutorEqualsTheWholeImage) {
 INSTANTIATE_TEST_SUITE_P(Methods, MethodChain, ::testing::ValuesIn(method_cases({})),
                          [](const auto& instance) { return instance.param.name; });
 
-}  // namespace method_chain_test
-}  // namespace vantage
+}  // namespace vantage::method_chain_test

@@ -1,16 +1,8 @@
 #include "engine/evaluation/method_comparison.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <atomic>
-#include <cmath>
-#include <map>
-
-#include "engine/error.h"
-
-namespace vantage {
-namespace method_comparison_test {
+namespace vantage::method_comparison_test {
 
 const std::vector<std::string> kFour = {"ssd", "membrane", "local-stopping-margin", "bayes"};
 
@@ -23,8 +15,7 @@ ComparisonOptions small_options(std::vector<std::string> pairs) {
 }
 
 TEST(MethodComparison, RunsComeInOrder) {
-  Execution execution({.threads = 2});
-  const auto runs = compare_methods(small_options({"rds-square", "real-bars"}), execution);
+  const auto runs = compare_methods(small_options({"rds-square", "real-bars"}), execution());
   ASSERT_EQ(runs.size(), 2U * 2 * 4);
   EXPECT_EQ(runs[0].pair, "rds-square");
   EXPECT_EQ(runs[15].pair, "real-bars");
@@ -40,16 +31,13 @@ TEST(MethodComparison, RunsComeInOrder) {
 }
 
 TEST(MethodComparison, OnlyVisiblePixelsCount) {
-  Execution execution({.threads = 1});
-  const auto runs = compare_methods(small_options({"rds-square"}), execution);
+  const auto runs = compare_methods(small_options({"rds-square"}), execution());
   BookPairOptions options = book_pair_options("rds-square");
   options.width_px = options.height_px = 40;
   const BookPair pair = make_book_pair(options);
   int visible = 0;
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 40; ++x) {
-      visible += pair.left_occluded.at(x, y) == 0 ? 1 : 0;
-    }
+  for (const auto [x, y] : positions_of(40, 40)) {
+    visible += pair.left_occluded.at(x, y) == 0 ? 1 : 0;
   }
   EXPECT_EQ(runs.front().scores.evaluated_pixels, visible);
 }
@@ -89,25 +77,23 @@ TEST(MethodComparison, ParametersGoToTheMethodsThatReadThem) {
 }
 
 TEST(MethodComparison, EveryMethodMatchesSmallPairs) {
-  Execution execution({.threads = 2});
   ComparisonOptions options = small_options({"rds-square"});
   options.noise_sigmas = {0};
   options.methods.clear();
   for (const ComparedMethod& method : compared_methods()) {
     options.methods.emplace_back(method.name);
   }
-  for (const ComparisonRun& run : compare_methods(options, execution)) {
+  for (const ComparisonRun& run : compare_methods(options, execution())) {
     EXPECT_LT(run.scores.bad_0_5_percent, 60) << run.method;
   }
 }
 
 // What the book's experiments show, at their full size (EQUATIONS §4).
 TEST(MethodComparison, BayesIsAlmostPerfectWithLittleNoiseAndTheBestOfFour) {
-  Execution execution({.threads = 2});
   const auto runs = compare_methods({.pairs = {kBookPairNames.begin(), kBookPairNames.end()},
                                      .noise_sigmas = {0, 0.25, 0.5, 1, 2},
                                      .methods = kFour},
-                                    execution);
+                                    execution());
   ASSERT_EQ(runs.size(), 5U * 5 * 4);
   for (std::size_t i = 0; i < runs.size(); i += kFour.size()) {
     const ComparisonRun& bayes = runs[i + 3];
@@ -125,14 +111,13 @@ TEST(MethodComparison, BayesIsAlmostPerfectWithLittleNoiseAndTheBestOfFour) {
 }
 
 TEST(MethodComparison, DiffusionBlursOnWhereTheOthersConverge) {
-  Execution execution({.threads = 2});
   const auto runs = compare_methods(
       {.pairs = {"ramp-square"},
        .noise_sigmas = {0},
        .methods = {"diffusion", "local-stopping-margin", "local-stopping-entropy", "membrane"},
        .iterations = {30, 100},
        .size_px = 60},
-      execution);
+      execution());
   ASSERT_EQ(runs.size(), 4U * 2);
   for (std::size_t i = 0; i < runs.size(); i += 2) {
     const double before = runs[i].scores.bad_0_5_percent;
@@ -147,17 +132,15 @@ TEST(MethodComparison, DiffusionBlursOnWhereTheOthersConverge) {
 }
 
 TEST(MethodComparison, CanBeStopped) {
-  Execution execution({.threads = 1});
   const std::atomic<bool> stop = true;
-  EXPECT_TRUE(compare_methods(small_options({"rds-square"}), execution, &stop).empty());
+  EXPECT_TRUE(compare_methods(small_options({"rds-square"}), execution(), &stop).empty());
 }
 
 TEST(MethodComparison, RefusesBadOptions) {
-  Execution execution({.threads = 1});
-  const auto refuses = [&execution](const auto& change) {
+  const auto refuses = [](const auto& change) {
     ComparisonOptions options = small_options({"rds-square"});
     change(options);
-    EXPECT_THROW(compare_methods(options, execution), UsageError);
+    EXPECT_THROW(compare_methods(options, execution()), UsageError);
   };
   refuses([](ComparisonOptions& options) { options.pairs.clear(); });
   refuses([](ComparisonOptions& options) { options.pairs = {"stripes"}; });
@@ -167,5 +150,4 @@ TEST(MethodComparison, RefusesBadOptions) {
   refuses([](ComparisonOptions& options) { options.size_px = 15; });
 }
 
-}  // namespace method_comparison_test
-}  // namespace vantage
+}  // namespace vantage::method_comparison_test

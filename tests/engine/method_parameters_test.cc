@@ -1,33 +1,12 @@
 #include "engine/matching/options/method_rules.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/options/match_presets.h"
+#include "tests/engine/engine_test.h"
+#include "tests/engine/option_complaint.h"
 
-namespace vantage {
-namespace method_parameters_test {
-
-using testing::HasSubstr;
-
-/// What the validator says; "" when it is content.
-std::string complaint(const MatchOptions& options) {
-  try {
-    options.validate();
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
-}
+namespace vantage::method_parameters_test {
 
 TEST(MethodParameters, AreTheBooks) {
   // EQUATIONS §1–§3.
@@ -218,17 +197,27 @@ void costs_by(MethodOverrides& parameters) {
 }
 
 template <typename T>
-std::function<void(MatchOptions&, double)> parameter(std::optional<T> MethodOverrides::*field) {
-  return [=](MatchOptions& options, double value) {
-    options.parameters.*field = static_cast<T>(value);
-  };
+Bound bound(std::string name, std::optional<T> MethodOverrides::*field, std::vector<double> good,
+            std::vector<double> bad, std::string says, MatchMethod method = MatchMethod::kSsd,
+            std::function<void(MethodOverrides&)> needs = {}) {
+  return {std::move(name),
+          [=](MatchOptions& options, double value) {
+            options.parameters.*field = static_cast<T>(value);
+          },
+          std::move(good),
+          std::move(bad),
+          std::move(says),
+          method,
+          std::move(needs)};
 }
 template <typename T>
-std::function<void(MatchOptions&, double)> refinement(
-    std::optional<T> RefinementOverrides::*field) {
-  return [=](MatchOptions& options, double value) {
-    options.refinement.*field = static_cast<T>(value);
-  };
+Bound bound(std::string name, std::optional<T> RefinementOverrides::*field,
+            std::vector<double> good, std::vector<double> bad, std::string says) {
+  return {std::move(name),
+          [=](MatchOptions& options, double value) {
+            options.refinement.*field = static_cast<T>(value);
+          },
+          std::move(good), std::move(bad), std::move(says)};
 }
 
 TEST(MethodParameters, DifferFromLevelToLevel) {
@@ -256,219 +245,88 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
   using P = MethodOverrides;
   using R = RefinementOverrides;
   const std::vector<Bound> bounds = {
-      {"window",
-       parameter(&P::window_px),
-       {1, 3, 181},
-       {-1, 0, 2, 182, 183},
-       "odd number from 1 to 181"},
-      {"aggregation-sigma",
-       parameter(&P::aggregation_sigma_px),
-       {0.5, 16},
-       {0.49, 16.1, kNan},
-       "from 0.5 to 16",
-       MatchMethod::kGradient},
-      {"iterations",
-       parameter(&P::iterations),
-       {0, 10000},
-       {-1, 10001},
-       "from 0 to 10000",
-       MatchMethod::kDiffusion},
-      {"final-iterations",
-       parameter(&P::final_iterations),
-       {0, 10000},
-       {-1, 10001},
-       "from 0 to 10000",
-       MatchMethod::kMembrane,
-       several_levels},
-      {"prior-growth",
-       parameter(&P::prior_growth),
-       {1, 4},
-       {0.99, 4.01, kNan},
-       "from 1 to 4",
-       MatchMethod::kBayes,
-       several_levels},
-      {"level-weight",
-       parameter(&P::level_weight),
-       {0.001, 1},
-       {0, -0.1, 1.001, kNan},
-       "above 0 and at most 1",
-       MatchMethod::kBayes,
-       several_levels},
-      {"slant-penalty",
-       parameter(&P::slant_penalty),
-       {0, 0.5, kInfinity},
-       {-0.01, kNan},
-       "of at least 0, or none",
-       MatchMethod::kBayes,
-       several_levels},
-      {"edge-weight",
-       parameter(&P::edge_weight),
-       {0, 1},
-       {-0.01, 1.01, kNan},
-       "from 0 to 1",
-       MatchMethod::kBayes},
-      {"edge-contrast",
-       parameter(&P::edge_contrast),
-       {0.01, 255},
-       {0, -1, kNan, kInfinity},
-       "above 0",
-       MatchMethod::kBayes,
-       edges},
-      {"edge-diffusion",
-       parameter(&P::edge_diffusion),
-       {0, 1000},
-       {-1, 1001},
-       "from 0 to 1000",
-       MatchMethod::kMembrane,
-       edges},
-      {"jump-penalty",
-       parameter(&P::jump_penalty),
-       {0, 1000},
-       {-0.01, kNan, kInfinity},
-       "of at least 0",
-       MatchMethod::kSsd,
-       scanlines},
-      {"jump-limit",
-       parameter(&P::jump_limit),
-       {0, 1000, kInfinity},
-       {-0.01, kNan},
-       "at least 0, or none",
-       MatchMethod::kSsd,
-       scanlines},
-      {"occlusion-penalty",
-       parameter(&P::occlusion_penalty),
-       {0.01, 1000},
-       {0, -0.01, kNan, kInfinity},
-       "a number above 0",
-       MatchMethod::kSsd,
-       both_images},
-      {"levels", parameter(&P::levels), {1, 10}, {-1, 0, 11}, "from 1 to 10"},
-      {"candidate-blocks", parameter(&P::candidate_blocks), {0}, {-1, 9}, "(all candidates) to 8"},
-      {"window-levels", parameter(&P::window_levels), {0}, {-1, 3}, "from 0 to 2"},
-      {"census-thresholds",
-       parameter(&P::census_thresholds),
-       {1, 3},
-       {-1, 0, 2, 4},
-       "1 or 3",
-       MatchMethod::kSsd,
-       costs_by<MatchCost::kRayCensus>},
-      {"pruned-levels",
-       parameter(&P::pruned_levels),
-       {1, 10},
-       {-1, 0, 11},
-       "from 1 to 10",
-       MatchMethod::kBayes,
-       pruned},
-      {"lambda",
-       parameter(&P::lambda),
-       {0.01, 0.249},
-       {0, -1, 0.25, kNan},
-       "below 0.25",
-       MatchMethod::kDiffusion},
-      {"lambda",
-       parameter(&P::lambda),
-       {0.01, 0.249},
-       {0, 0.25, kNan},
-       "below 0.25",
-       MatchMethod::kLocalStopping},
-      {"lambda",
-       parameter(&P::lambda),
-       {0.01, 1 / 4.5},
-       {0, 0.2223, kNan},
-       "1/(4 + beta) = 0.2222",
-       MatchMethod::kMembrane},
-      {"beta",
-       parameter(&P::beta),
-       {0, 2.5},
-       {-0.1, kNan, kInfinity},
-       "at least 0",
-       MatchMethod::kMembrane},
-      {"mu",
-       parameter(&P::mu),
-       {0.01, 1},
-       {0, 1.01, kNan},
-       "above 0 and at most 1",
-       MatchMethod::kBayes},
-      {"candidate-step",
-       parameter(&P::candidate_step_px),
-       {1, 0.5, 0.25},
-       {0, 2, -1, 0.3, kNan},
-       "1, 0.5 or 0.25 pixels",
-       MatchMethod::kSsd},
-      {"sigma-prior",
-       parameter(&P::sigma_prior),
-       {0.01, 9},
-       {0, -1, kNan, kInfinity},
-       "above 0",
-       MatchMethod::kBayes},
-      {"epsilon-prior",
-       parameter(&P::epsilon_prior),
-       {0.01, 0.99},
-       {0, 1, -1, kNan},
-       "between 0 and 1",
-       MatchMethod::kBayes},
-      {"sigma-measurement",
-       parameter(&P::sigma_measurement),
-       {0.01, 99},
-       {0, -1, kNan, kInfinity},
-       "above 0",
-       MatchMethod::kBayes},
-      {"epsilon-measurement",
-       parameter(&P::epsilon_measurement),
-       {0.01, 0.99},
-       {0, 1, kNan},
-       "between 0 and 1",
-       MatchMethod::kBayes},
-      {"truncation",
-       parameter(&P::truncation),
-       {0.1, 255},
-       {0, -1, kNan, kInfinity},
-       "above 0",
-       MatchMethod::kSsd,
-       costs_by<MatchCost::kTruncated>},
-      {"alpha",
-       parameter(&P::alpha),
-       {0, 3},
-       {-0.1, kNan, kInfinity},
-       "at least 0",
-       MatchMethod::kGradient},
-      {"edge-snapping", refinement(&R::edge_snapping_px), {0, 16}, {-1, 17}, "from 0 to 16"},
-      {"cross-check",
-       refinement(&R::cross_check_px),
-       {1, 100},
-       {0.99, 0, kNan, kInfinity},
-       "at least 1"},
-      {"cross-check-level", refinement(&R::cross_check_level), {0}, {-1, 10}, "from 0 to 9"},
-      {"confidence-threshold",
-       refinement(&R::confidence_threshold),
-       {-5, 0, 5, -kInfinity},
-       {kNan, kInfinity},
-       "finite"},
-      {"speckle-size", refinement(&R::speckle_size_px), {0, 1000}, {-1}, "at least 0"},
-      {"surface-fit", refinement(&R::surface_fit_px), {0, 1, 16}, {-1, 17}, "from 0 to 16"},
-      {"surface-fit-step", refinement(&R::surface_fit_step_px), {1}, {0, 3}, "1 or 2"},
-      {"uniform-contrast",
-       refinement(&R::uniform_contrast),
-       {1},
-       {-0.5, kNan, kInfinity},
-       "a number of grey levels, at least 0"},
+      bound("window", &P::window_px, {1, 3, 181}, {-1, 0, 2, 182, 183}, "odd number from 1 to 181"),
+      bound("aggregation-sigma", &P::aggregation_sigma_px, {0.5, 16}, {0.49, 16.1, kNan},
+            "from 0.5 to 16", MatchMethod::kGradient),
+      bound("iterations", &P::iterations, {0, 10000}, {-1, 10001}, "from 0 to 10000",
+            MatchMethod::kDiffusion),
+      bound("final-iterations", &P::final_iterations, {0, 10000}, {-1, 10001}, "from 0 to 10000",
+            MatchMethod::kMembrane, several_levels),
+      bound("prior-growth", &P::prior_growth, {1, 4}, {0.99, 4.01, kNan}, "from 1 to 4",
+            MatchMethod::kBayes, several_levels),
+      bound("level-weight", &P::level_weight, {0.001, 1}, {0, -0.1, 1.001, kNan},
+            "above 0 and at most 1", MatchMethod::kBayes, several_levels),
+      bound("slant-penalty", &P::slant_penalty, {0, 0.5, kInfinity}, {-0.01, kNan},
+            "of at least 0, or none", MatchMethod::kBayes, several_levels),
+      bound("edge-weight", &P::edge_weight, {0, 1}, {-0.01, 1.01, kNan}, "from 0 to 1",
+            MatchMethod::kBayes),
+      bound("edge-contrast", &P::edge_contrast, {0.01, 255}, {0, -1, kNan, kInfinity}, "above 0",
+            MatchMethod::kBayes, edges),
+      bound("edge-diffusion", &P::edge_diffusion, {0, 1000}, {-1, 1001}, "from 0 to 1000",
+            MatchMethod::kMembrane, edges),
+      bound("jump-penalty", &P::jump_penalty, {0, 1000}, {-0.01, kNan, kInfinity}, "of at least 0",
+            MatchMethod::kSsd, scanlines),
+      bound("jump-limit", &P::jump_limit, {0, 1000, kInfinity}, {-0.01, kNan},
+            "at least 0, or none", MatchMethod::kSsd, scanlines),
+      bound("occlusion-penalty", &P::occlusion_penalty, {0.01, 1000}, {0, -0.01, kNan, kInfinity},
+            "a number above 0", MatchMethod::kSsd, both_images),
+      bound("levels", &P::levels, {1, 10}, {-1, 0, 11}, "from 1 to 10"),
+      bound("candidate-blocks", &P::candidate_blocks, {0}, {-1, 9}, "(all candidates) to 8"),
+      bound("window-levels", &P::window_levels, {0}, {-1, 3}, "from 0 to 2"),
+      bound("census-thresholds", &P::census_thresholds, {1, 3}, {-1, 0, 2, 4}, "1 or 3",
+            MatchMethod::kSsd, costs_by<MatchCost::kRayCensus>),
+      bound("pruned-levels", &P::pruned_levels, {1, 10}, {-1, 0, 11}, "from 1 to 10",
+            MatchMethod::kBayes, pruned),
+      bound("lambda", &P::lambda, {0.01, 0.249}, {0, -1, 0.25, kNan}, "below 0.25",
+            MatchMethod::kDiffusion),
+      bound("lambda", &P::lambda, {0.01, 0.249}, {0, 0.25, kNan}, "below 0.25",
+            MatchMethod::kLocalStopping),
+      bound("lambda", &P::lambda, {0.01, 1 / 4.5}, {0, 0.2223, kNan}, "1/(4 + beta) = 0.2222",
+            MatchMethod::kMembrane),
+      bound("beta", &P::beta, {0, 2.5}, {-0.1, kNan, kInfinity}, "at least 0",
+            MatchMethod::kMembrane),
+      bound("mu", &P::mu, {0.01, 1}, {0, 1.01, kNan}, "above 0 and at most 1", MatchMethod::kBayes),
+      bound("candidate-step", &P::candidate_step_px, {1, 0.5, 0.25}, {0, 2, -1, 0.3, kNan},
+            "1, 0.5 or 0.25 pixels", MatchMethod::kSsd),
+      bound("sigma-prior", &P::sigma_prior, {0.01, 9}, {0, -1, kNan, kInfinity}, "above 0",
+            MatchMethod::kBayes),
+      bound("epsilon-prior", &P::epsilon_prior, {0.01, 0.99}, {0, 1, -1, kNan}, "between 0 and 1",
+            MatchMethod::kBayes),
+      bound("sigma-measurement", &P::sigma_measurement, {0.01, 99}, {0, -1, kNan, kInfinity},
+            "above 0", MatchMethod::kBayes),
+      bound("epsilon-measurement", &P::epsilon_measurement, {0.01, 0.99}, {0, 1, kNan},
+            "between 0 and 1", MatchMethod::kBayes),
+      bound("truncation", &P::truncation, {0.1, 255}, {0, -1, kNan, kInfinity}, "above 0",
+            MatchMethod::kSsd, costs_by<MatchCost::kTruncated>),
+      bound("alpha", &P::alpha, {0, 3}, {-0.1, kNan, kInfinity}, "at least 0",
+            MatchMethod::kGradient),
+      bound("edge-snapping", &R::edge_snapping_px, {0, 16}, {-1, 17}, "from 0 to 16"),
+      bound("cross-check", &R::cross_check_px, {1, 100}, {0.99, 0, kNan, kInfinity}, "at least 1"),
+      bound("cross-check-level", &R::cross_check_level, {0}, {-1, 10}, "from 0 to 9"),
+      bound("confidence-threshold", &R::confidence_threshold, {-5, 0, 5, -kInfinity},
+            {kNan, kInfinity}, "finite"),
+      bound("speckle-size", &R::speckle_size_px, {0, 1000}, {-1}, "at least 0"),
+      bound("surface-fit", &R::surface_fit_px, {0, 1, 16}, {-1, 17}, "from 0 to 16"),
+      bound("surface-fit-step", &R::surface_fit_step_px, {1}, {0, 3}, "1 or 2"),
+      bound("uniform-contrast", &R::uniform_contrast, {1}, {-0.5, kNan, kInfinity},
+            "a number of grey levels, at least 0"),
   };
-  for (const Bound& bound : bounds) {
+  for (const Bound& row : bounds) {
     const auto complaint_about = [&](double value) {
       MatchOptions options;
-      options.method = bound.method;
-      if (bound.needs) {
-        bound.needs(options.parameters);
+      options.method = row.method;
+      if (row.needs) {
+        row.needs(options.parameters);
       }
-      bound.set(options, value);
+      row.set(options, value);
       return complaint(options);
     };
-    for (const double value : bound.good) {
-      EXPECT_EQ(complaint_about(value), "") << bound.name << ' ' << value;
+    for (const double value : row.good) {
+      EXPECT_EQ(complaint_about(value), "") << row.name << ' ' << value;
     }
-    for (const double value : bound.bad) {
-      EXPECT_THAT(complaint_about(value), HasSubstr(bound.name + " is ")) << value;
-      EXPECT_THAT(complaint_about(value), HasSubstr(bound.says)) << bound.name << ' ' << value;
+    for (const double value : row.bad) {
+      EXPECT_THAT(complaint_about(value), HasSubstr(row.name + " is ")) << value;
+      EXPECT_THAT(complaint_about(value), HasSubstr(row.says)) << row.name << ' ' << value;
     }
   }
 }
@@ -553,5 +411,4 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   EXPECT_EQ(complaint(options), "");
 }
 
-}  // namespace method_parameters_test
-}  // namespace vantage
+}  // namespace vantage::method_parameters_test

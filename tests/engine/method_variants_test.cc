@@ -1,37 +1,19 @@
 // Parameters of the methods, and images of awkward shape, against the plain transcription.
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <ostream>
-#include <string>
-
-#include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace method_variants_test {
-
-using test::expect_equals_oracle;
-using test::method_cases;
-using test::MethodCase;
-using test::PhotographPair;
-using test::PixelKind;
-using test::textured_pair;
-using test::tolerance_of;
+namespace vantage::method_variants_test {
 
 struct Variant {
   const char* name;
   MatchMethod method;
-  void (*set)(MethodOverrides& p);
+  MethodOverrides parameters;
 };
 
 void PrintTo(const Variant& variant, std::ostream* stream) { *stream << variant.name; }
-
-std::string name_of(const ::testing::TestParamInfo<Variant>& instance) {
-  return instance.param.name;
-}
 
 class MethodVariants : public ::testing::TestWithParam<Variant> {};
 
@@ -41,145 +23,72 @@ TEST_P(MethodVariants, EqualTheOracle) {
   MatchOptions options;
   options.method = GetParam().method;
   options.disparities = range;
-  GetParam().set(options.parameters);
-  Execution execution({.threads = 2});
-  expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()), GetParam().name);
+  options.parameters = GetParam().parameters;
+  expect_equals_oracle(pair, options, execution(), tolerance_of(options.resolved()),
+                       GetParam().name);
 }
 
-// p: the parameters of a variant.
-constexpr MatchMethod kGradient = MatchMethod::kGradient;
-constexpr MatchMethod kBayes = MatchMethod::kBayes;
+using enum MatchMethod;
 
-INSTANTIATE_TEST_SUITE_P(
-    Gradient, MethodVariants,
-    ::testing::Values(
-        Variant{"sobel", kGradient,
-                [](MethodOverrides& p) { p.gradient = GradientFilter::kSobel; }},
-        Variant{"simoncelli3", kGradient,
-                [](MethodOverrides& p) { p.gradient = GradientFilter::kSimoncelli3; }},
-        Variant{"simoncelli5", kGradient,
-                [](MethodOverrides& p) { p.gradient = GradientFilter::kSimoncelli5; }},
-        Variant{"octagon", kGradient, [](MethodOverrides& p) { p.norm = GradientNorm::kOctagon; }},
-        Variant{"l1", kGradient, [](MethodOverrides& p) { p.norm = GradientNorm::kL1; }},
-        Variant{"l_max", kGradient, [](MethodOverrides& p) { p.norm = GradientNorm::kMax; }},
-        Variant{"forward", kGradient,
-                [](MethodOverrides& p) { p.gradient = GradientFilter::kForward; }},
-        Variant{"x_gradients", kGradient,
-                [](MethodOverrides& p) { p.gradient_components = GradientComponents::kX; }},
-        Variant{"raw_gradients", kGradient, [](MethodOverrides& p) { p.prefilter = false; }},
-        Variant{"alpha", kGradient, [](MethodOverrides& p) { p.alpha = 0.4; }},
-        Variant{"narrow_cascade", kGradient,
-                [](MethodOverrides& p) { p.aggregation_sigma_px = 0.5; }},
-        Variant{"odd_cascade", kGradient, [](MethodOverrides& p) { p.aggregation_sigma_px = 2.7; }},
-        Variant{"wide_cascade", kGradient,
-                [](MethodOverrides& p) { p.aggregation_sigma_px = 9.3; }},
-        Variant{"gaussian", kGradient,
-                [](MethodOverrides& p) {
-                  p.aggregation = Aggregation::kGaussian;
-                  p.aggregation_sigma_px = 3.3;
-                }}),
-    name_of);
+const Variant kVariants[] = {
+    {"sobel", kGradient, {.gradient = GradientFilter::kSobel}},
+    {"simoncelli3", kGradient, {.gradient = GradientFilter::kSimoncelli3}},
+    {"simoncelli5", kGradient, {.gradient = GradientFilter::kSimoncelli5}},
+    {"octagon", kGradient, {.norm = GradientNorm::kOctagon}},
+    {"l1", kGradient, {.norm = GradientNorm::kL1}},
+    {"l_max", kGradient, {.norm = GradientNorm::kMax}},
+    {"forward", kGradient, {.gradient = GradientFilter::kForward}},
+    {"x_gradients", kGradient, {.gradient_components = GradientComponents::kX}},
+    {"raw_gradients", kGradient, {.prefilter = false}},
+    {"alpha", kGradient, {.alpha = 0.4}},
+    {"narrow_cascade", kGradient, {.aggregation_sigma_px = 0.5}},
+    {"odd_cascade", kGradient, {.aggregation_sigma_px = 2.7}},
+    {"wide_cascade", kGradient, {.aggregation_sigma_px = 9.3}},
+    {"gaussian", kGradient, {.aggregation = Aggregation::kGaussian, .aggregation_sigma_px = 3.3}},
+    {"no_iterations", kDiffusion, {.iterations = 0}},
+    {"one_iteration", kMembrane, {.iterations = 1}},
+    {"fifty_iterations", kMembrane, {.iterations = 50}},
+    {"steps", kDiffusion, {.iterations = 25, .lambda = 0.24}},
+    {"largest_step", kMembrane, {.lambda = 0.2, .beta = 1}},
+    {"no_pull", kMembrane, {.beta = 0}},
+    {"stopping_once", kLocalStopping, {.iterations = 1}},
+    {"stopping_never_begun", kLocalStopping, {.iterations = 0}},
+    {"stopping_thirty", kLocalStopping, {.iterations = 30}},
+    {"sure_entropy", kLocalStopping, {.certainty = Certainty::kEntropy}},
+    {"entropy", kLocalStopping, {.sigma_measurement = 20, .certainty = Certainty::kEntropy}},
+    {"prior_only_at_start", kBayes, {.iterations = 0}},
+    {"once", kBayes, {.iterations = 1}},
+    {"fifty", kBayes, {.iterations = 50}},
+    {"planar", kBayes, {.sigma_measurement = 2, .sigma_prior = 0.1}},
+    {"two_taps", kBayes, {.sigma_prior = 0.7}},
+    {"wide_prior", kBayes, {.sigma_prior = 3}},
+    {"endless_prior", kBayes, {.sigma_prior = 200}},
+    {"mu_small", kBayes, {.mu = 0.1}},
+    {"mu_one", kBayes, {.sigma_measurement = 20, .mu = 1}},
+    {"mu_other_wide", kBayes, {.iterations = 20, .mu = 0.45, .sigma_prior = 1.5}},
+    {"sure_prior", kBayes, {.epsilon_prior = 1e-6}},
+    {"surest_prior", kBayes, {.epsilon_prior = 1e-9}},
+    {"impulse", kBayes, {.prior = Prior::kImpulse}},
+    {"impulse_maximum",
+     kBayes,
+     {.iterations = 5, .prior = Prior::kImpulse, .prior_smoothing = PriorSmoothing::kMaximum}},
+    {"quadratic", kBayes, {.prior = Prior::kQuadratic}},
+    {"quadratic_maximum",
+     kBayes,
+     {.prior = Prior::kQuadratic, .prior_smoothing = PriorSmoothing::kMaximum}},
+    {"quadratic_wide", kBayes, {.mu = 0.3, .prior = Prior::kQuadratic, .sigma_prior = 6}},
+    {"quadratic_narrow", kBayes, {.prior = Prior::kQuadratic, .sigma_prior = 0.2}},
+    {"unsure", kBayes, {.epsilon_measurement = 0.6, .epsilon_prior = 0.4}},
+    {"sure_measurement", kBayes, {.epsilon_measurement = 1e-5}},
+};
 
-INSTANTIATE_TEST_SUITE_P(
-    Diffusion, MethodVariants,
-    ::testing::Values(Variant{"no_iterations", MatchMethod::kDiffusion,
-                              [](MethodOverrides& p) { p.iterations = 0; }},
-                      Variant{"one_iteration", MatchMethod::kMembrane,
-                              [](MethodOverrides& p) { p.iterations = 1; }},
-                      Variant{"fifty_iterations", MatchMethod::kMembrane,
-                              [](MethodOverrides& p) { p.iterations = 50; }},
-                      Variant{"steps", MatchMethod::kDiffusion,
-                              [](MethodOverrides& p) {
-                                p.iterations = 25;
-                                p.lambda = 0.24;
-                              }},
-                      Variant{"largest_step", MatchMethod::kMembrane,
-                              [](MethodOverrides& p) {
-                                p.lambda = 0.2;
-                                p.beta = 1;
-                              }},
-                      Variant{"no_pull", MatchMethod::kMembrane,
-                              [](MethodOverrides& p) { p.beta = 0; }},
-                      Variant{"stopping_once", MatchMethod::kLocalStopping,
-                              [](MethodOverrides& p) { p.iterations = 1; }},
-                      Variant{"stopping_never_begun", MatchMethod::kLocalStopping,
-                              [](MethodOverrides& p) { p.iterations = 0; }},
-                      Variant{"stopping_thirty", MatchMethod::kLocalStopping,
-                              [](MethodOverrides& p) { p.iterations = 30; }},
-                      Variant{"sure_entropy", MatchMethod::kLocalStopping,
-                              [](MethodOverrides& p) { p.certainty = Certainty::kEntropy; }},
-                      Variant{"entropy", MatchMethod::kLocalStopping,
-                              [](MethodOverrides& p) {
-                                p.certainty = Certainty::kEntropy;
-                                p.sigma_measurement = 20;
-                              }}),
-    name_of);
-
-INSTANTIATE_TEST_SUITE_P(
-    Bayes, MethodVariants,
-    ::testing::Values(
-        Variant{"prior_only_at_start", kBayes, [](MethodOverrides& p) { p.iterations = 0; }},
-        Variant{"once", kBayes, [](MethodOverrides& p) { p.iterations = 1; }},
-        Variant{"fifty", kBayes, [](MethodOverrides& p) { p.iterations = 50; }},
-        Variant{"planar", kBayes,
-                [](MethodOverrides& p) {
-                  p.sigma_prior = 0.1;
-                  p.sigma_measurement = 2;
-                }},
-        Variant{"two_taps", kBayes, [](MethodOverrides& p) { p.sigma_prior = 0.7; }},
-        Variant{"wide_prior", kBayes, [](MethodOverrides& p) { p.sigma_prior = 3; }},
-        Variant{"endless_prior", kBayes, [](MethodOverrides& p) { p.sigma_prior = 200; }},
-        Variant{"mu_small", kBayes, [](MethodOverrides& p) { p.mu = 0.1; }},
-        Variant{"mu_one", kBayes,
-                [](MethodOverrides& p) {
-                  p.mu = 1;
-                  p.sigma_measurement = 20;
-                }},
-        Variant{"mu_other_wide", kBayes,
-                [](MethodOverrides& p) {
-                  p.iterations = 20;
-                  p.mu = 0.45;
-                  p.sigma_prior = 1.5;
-                }},
-        Variant{"sure_prior", kBayes, [](MethodOverrides& p) { p.epsilon_prior = 1e-6; }},
-        Variant{"surest_prior", kBayes, [](MethodOverrides& p) { p.epsilon_prior = 1e-9; }},
-        Variant{"impulse", kBayes, [](MethodOverrides& p) { p.prior = Prior::kImpulse; }},
-        Variant{"impulse_maximum", kBayes,
-                [](MethodOverrides& p) {
-                  p.prior = Prior::kImpulse;
-                  p.prior_smoothing = PriorSmoothing::kMaximum;
-                  p.iterations = 5;
-                }},
-        Variant{"quadratic", kBayes, [](MethodOverrides& p) { p.prior = Prior::kQuadratic; }},
-        Variant{"quadratic_maximum", kBayes,
-                [](MethodOverrides& p) {
-                  p.prior = Prior::kQuadratic;
-                  p.prior_smoothing = PriorSmoothing::kMaximum;
-                }},
-        Variant{"quadratic_wide", kBayes,
-                [](MethodOverrides& p) {
-                  p.prior = Prior::kQuadratic;
-                  p.sigma_prior = 6;
-                  p.mu = 0.3;
-                }},
-        Variant{"quadratic_narrow", kBayes,
-                [](MethodOverrides& p) {
-                  p.prior = Prior::kQuadratic;
-                  p.sigma_prior = 0.2;
-                }},
-        Variant{"unsure", kBayes,
-                [](MethodOverrides& p) {
-                  p.epsilon_prior = 0.4;
-                  p.epsilon_measurement = 0.6;
-                }},
-        Variant{"sure_measurement", kBayes,
-                [](MethodOverrides& p) { p.epsilon_measurement = 1e-5; }}),
-    name_of);
+INSTANTIATE_TEST_SUITE_P(OfEveryMethod, MethodVariants, ::testing::ValuesIn(kVariants),
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 class AwkwardShapes : public ::testing::TestWithParam<MethodCase> {};
 
 TEST_P(AwkwardShapes, EqualTheOracle) {
-  if (test::is_stepped(GetParam())) {
+  if (is_stepped(GetParam())) {
     GTEST_SKIP() << "cells are rounded to steps: see stage_cost_test, coarse_to_fine_test";
   }
   struct Shape {
@@ -206,7 +115,7 @@ TEST_P(AwkwardShapes, EqualTheOracle) {
           << name;
       continue;
     }
-    test::Tolerance tolerance = tolerance_of(options.resolved());
+    Tolerance tolerance = tolerance_of(options.resolved());
     if (options.resolved().aggregation == Aggregation::kLocalStopping) {
       tolerance.strays = 5;  // an eleventh of such small images lies beside a stray pixel
     }
@@ -217,7 +126,6 @@ TEST_P(AwkwardShapes, EqualTheOracle) {
 /// No texture: every candidate is as good, the smallest disparity with a partner wins. Under
 /// Bayesian diffusion not quite: candidates beside others that are likely are more likely.
 TEST_P(AwkwardShapes, ConstantImagesTakeTheSmallestDisparity) {
-  Execution execution({.threads = 2});
   Image<std::uint8_t> left(23, 12);
   Image<std::uint8_t> right(23, 12);
   left.fill(77);
@@ -225,35 +133,31 @@ TEST_P(AwkwardShapes, ConstantImagesTakeTheSmallestDisparity) {
   const PhotographPair pair{{std::move(left)}, {std::move(right)}};
   MatchOptions options = GetParam().options;
   options.disparities = {-4, 9};
-  expect_equals_oracle(pair, options, execution, tolerance_of(options.resolved()), "constant");
+  expect_equals_oracle(pair, options, execution(), tolerance_of(options.resolved()), "constant");
   if (options.resolved().aggregation == Aggregation::kBayes) {
     return;
   }
   DisparityMaps maps;
-  StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps);
+  StereoMatcher(options, execution()).match(pair.left, pair.right, {}, maps);
   const int margin =
       options.resolved().border == Border::kValid ? options.resolved().window_px / 2 : 0;
-  for (int y = margin; y < 12 - margin; ++y) {
-    for (int x = margin; x < 23 - margin; ++x) {
-      EXPECT_EQ(maps.left.disparity_px.at(x, y), std::max(-4, x - 22 + margin)) << x << ", " << y;
-      EXPECT_EQ(maps.right.disparity_px.at(x, y), std::max(-4, -x + margin)) << x << ", " << y;
-    }
+  for (const auto [x, y] : positions_of({margin, 23 - margin}, {margin, 12 - margin})) {
+    EXPECT_EQ(maps.left.disparity_px.at(x, y), std::max(-4, x - 22 + margin)) << x << ", " << y;
+    EXPECT_EQ(maps.right.disparity_px.at(x, y), std::max(-4, -x + margin)) << x << ", " << y;
   }
 }
 
 TEST_P(AwkwardShapes, RangesWithoutAnyCandidateAreRefused) {
-  Execution execution({.threads = 1});
   const auto pair = textured_pair(20, 10, {0, 5}, PixelKind::kGrey8, 6);
   MatchOptions options = GetParam().options;
   for (const DisparityRange range : {DisparityRange{20, 30}, DisparityRange{-60, -20}}) {
     options.disparities = range;
     DisparityMaps maps;
-    EXPECT_THROW(StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps), Error);
+    EXPECT_THROW(StereoMatcher(options, execution()).match(pair.left, pair.right, {}, maps), Error);
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, AwkwardShapes, ::testing::ValuesIn(method_cases({})),
                          [](const auto& instance) { return instance.param.name; });
 
-}  // namespace method_variants_test
-}  // namespace vantage
+}  // namespace vantage::method_variants_test

@@ -1,22 +1,11 @@
 #include "engine/view_geometry/new_view.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
-#include <numbers>
-#include <random>
 
-#include "engine/error.h"
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace new_view_test {
-
-using test::error_of;
-using test::random_rotation;
-using test::uniform;
+namespace vantage::new_view_test {
 
 RectifiedPair random_pair(std::mt19937& random) {
   RectifiedPair pair;
@@ -143,5 +132,4 @@ TEST(NewView, RefusesWhatCannotBeSeen) {
   EXPECT_THROW(baseline_view(0, std::nan(""), 4, 4), UsageError);
 }
 
-}  // namespace new_view_test
-}  // namespace vantage
+}  // namespace vantage::new_view_test

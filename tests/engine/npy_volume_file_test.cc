@@ -1,20 +1,8 @@
 #include "engine/io/maps/npy_volume_file.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cstddef>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
-#include "tests/temporary_folder.h"
-
-namespace vantage {
-namespace npy_volume_file_test {
+namespace vantage::npy_volume_file_test {
 
 namespace fs = std::filesystem;
 
@@ -43,10 +31,8 @@ class NpyVolumeFileTest : public ::testing::Test {
     for (int y = shape.height_px - 1; y >= 0; --y) {
       for (int x = shape.width_px - 2; x >= 0; x -= 2) {
         std::vector<float> part;
-        for (int column = x; column < x + 2; ++column) {
-          for (int i = 0; i < shape.candidates(); ++i) {
-            part.push_back(static_cast<float>(100 * y + 10 * column + i));
-          }
+        for (const auto [i, column] : positions_of({0, shape.candidates()}, {x, x + 2})) {
+          part.push_back(static_cast<float>(100 * y + 10 * column + i));
         }
         file.write(x, y, 2, part.data());
       }
@@ -64,8 +50,7 @@ TEST_F(NpyVolumeFileTest, HoldsThePartsInOrder) {
     EXPECT_FALSE(fs::exists(path()));
     file.commit();
   }
-  EXPECT_NE(bytes().find("'descr': '<f4', 'fortran_order': False, 'shape': (3,4,5,)"),
-            std::string::npos);
+  EXPECT_THAT(bytes(), HasSubstr("'descr': '<f4', 'fortran_order': False, 'shape': (3,4,5,)"));
   const std::vector<float> all = values();
   ASSERT_EQ(all.size(), 60U);
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -98,5 +83,4 @@ TEST_F(NpyVolumeFileTest, LeavesNothingUnlessComplete) {
   EXPECT_THROW(file.start(kShape), UsageError);
 }
 
-}  // namespace npy_volume_file_test
-}  // namespace vantage
+}  // namespace vantage::npy_volume_file_test

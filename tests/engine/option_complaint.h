@@ -1,20 +1,13 @@
 #pragma once
 
-#include <string>
-
-#include "engine/error.h"
 #include "engine/matching/options/match_options.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// What validate() says against the options; empty: nothing.
 inline std::string complaint(const MatchOptions& options) {
-  try {
-    options.validate();
-  } catch (const UsageError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of([&] { options.validate(); });
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

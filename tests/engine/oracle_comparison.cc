@@ -1,25 +1,13 @@
 #include "tests/engine/oracle_comparison.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <iostream>
-#include <random>
-#include <sstream>
-#include <string_view>
-#include <type_traits>
-#include <utility>
-#include <variant>
-#include <vector>
 
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/levels/energy_format.h"
-#include "engine/matching/stereo_matcher.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 namespace {
 
 /// Uniform in [0, 1).
@@ -67,13 +55,11 @@ template <typename T>
 Photograph photograph_of(const std::vector<std::vector<double>>& channels, int width, int height,
                          double top) {
   Image<T> image(width, height, static_cast<int>(channels.size()));
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < image.channels(); ++c) {
-        const double value =
-            channels[static_cast<std::size_t>(c)][static_cast<std::size_t>(y * width + x)];
-        image.at(x, y, c) = static_cast<T>(top * std::clamp(value, 0.0, 0.999999));
-      }
+  for (const auto [x, y] : positions_of(width, height)) {
+    for (int c = 0; c < image.channels(); ++c) {
+      const double value =
+          channels[static_cast<std::size_t>(c)][static_cast<std::size_t>(y * width + x)];
+      image.at(x, y, c) = static_cast<T>(top * std::clamp(value, 0.0, 0.999999));
     }
   }
   return {std::move(image)};
@@ -109,49 +95,47 @@ bool leaves_out_taps(const MethodParameters& parameters) {
 Agreement compare(const DisparityMap& map, const Image<float>& confidence, const PlainMap& oracle,
                   bool refined, const Tolerance& tolerance) {
   Agreement result;
-  for (int y = 0; y < oracle.height; ++y) {
-    for (int x = 0; x < oracle.width; ++x) {
-      const PlainChoice& expected = oracle.at(x, y);
-      const double actual = map.at(x, y);
-      const double sureness = confidence.at(x, y);
-      if (std::isnan(expected.winner)) {
-        EXPECT_TRUE(std::isnan(actual) && std::isnan(sureness))
-            << "no candidate, but " << actual << " at " << x << ", " << y;
-        continue;
-      }
-      ++result.candidates;
-      EXPECT_TRUE(std::isfinite(actual) && std::isfinite(sureness))
-          << actual << " with confidence " << sureness << " at " << x << ", " << y;
-      const double magnitude = std::max(
-          {std::abs(expected.energy),
-           std::isinf(expected.runner_up) ? 0 : std::abs(expected.runner_up), tolerance.floor});
-      const bool distinct = expected.runner_up - expected.energy > tolerance.tie * magnitude;
-      const double off_px = std::abs(actual - expected.disparity);
-      // A refined position is at most half a pixel from its winner.
-      const bool equal =
-          refined ? std::abs(actual - expected.winner) <= 0.5001 : actual == expected.winner;
-      result.distinct += distinct ? 1 : 0;
-      result.equal += equal ? 1 : 0;
-      result.distinct_equal += distinct && equal ? 1 : 0;
-      const double off = std::abs(sureness - expected.confidence) /
-                         std::max(std::abs(expected.confidence), tolerance.confidence_floor);
-      const bool flat = expected.curvature <= 100 * tolerance.tie * magnitude || !distinct;
-      const bool agrees =
-          off <= tolerance.confidence && (!refined || flat || off_px <= tolerance.subpixel_px);
-      if (equal) {
-        result.confident += agrees ? 1 : 0;
-        result.worst_confidence = std::max(result.worst_confidence, off);
-        result.worst_subpixel_px =
-            std::max(result.worst_subpixel_px, refined && !flat ? off_px : 0.0);
-      }
-      if (((distinct && !equal) || (equal && !agrees)) && result.first_difference.empty()) {
-        std::ostringstream text;
-        text << "at " << x << ", " << y << ": disparity " << actual << ", expected "
-             << expected.disparity << "; confidence " << sureness << ", expected "
-             << expected.confidence << "; energy " << expected.energy << ", second "
-             << expected.runner_up;
-        result.first_difference = text.str();
-      }
+  for (const auto [x, y] : positions_of(oracle.width, oracle.height)) {
+    const PlainChoice& expected = oracle.at(x, y);
+    const double actual = map.at(x, y);
+    const double sureness = confidence.at(x, y);
+    if (std::isnan(expected.winner)) {
+      EXPECT_TRUE(std::isnan(actual) && std::isnan(sureness))
+          << "no candidate, but " << actual << " at " << x << ", " << y;
+      continue;
+    }
+    ++result.candidates;
+    EXPECT_TRUE(std::isfinite(actual) && std::isfinite(sureness))
+        << actual << " with confidence " << sureness << " at " << x << ", " << y;
+    const double magnitude = std::max(
+        {std::abs(expected.energy),
+         std::isinf(expected.runner_up) ? 0 : std::abs(expected.runner_up), tolerance.floor});
+    const bool distinct = expected.runner_up - expected.energy > tolerance.tie * magnitude;
+    const double off_px = std::abs(actual - expected.disparity);
+    // A refined position is at most half a pixel from its winner.
+    const bool equal =
+        refined ? std::abs(actual - expected.winner) <= 0.5001 : actual == expected.winner;
+    result.distinct += distinct ? 1 : 0;
+    result.equal += equal ? 1 : 0;
+    result.distinct_equal += distinct && equal ? 1 : 0;
+    const double off = std::abs(sureness - expected.confidence) /
+                       std::max(std::abs(expected.confidence), tolerance.confidence_floor);
+    const bool flat = expected.curvature <= 100 * tolerance.tie * magnitude || !distinct;
+    const bool agrees =
+        off <= tolerance.confidence && (!refined || flat || off_px <= tolerance.subpixel_px);
+    if (equal) {
+      result.confident += agrees ? 1 : 0;
+      result.worst_confidence = std::max(result.worst_confidence, off);
+      result.worst_subpixel_px =
+          std::max(result.worst_subpixel_px, refined && !flat ? off_px : 0.0);
+    }
+    if (((distinct && !equal) || (equal && !agrees)) && result.first_difference.empty()) {
+      std::ostringstream text;
+      text << "at " << x << ", " << y << ": disparity " << actual << ", expected "
+           << expected.disparity << "; confidence " << sureness << ", expected "
+           << expected.confidence << "; energy " << expected.energy << ", second "
+           << expected.runner_up;
+      result.first_difference = text.str();
     }
   }
   return result;
@@ -186,16 +170,23 @@ PhotographPair textured_pair(int width, int height, DisparityRange range, PixelK
       return 0.5 + 1.6 * (world[static_cast<std::size_t>(y * wide + column + margin)] - 0.5) +
              noise;
     };
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const bool in_front =
-            std::abs(2 * x - width) < width / 2 && std::abs(2 * y - height) < height / 2;
-        right.back().push_back(seen(x, y));
-        left.back().push_back(seen(x - (in_front ? front : background), y));
-      }
+    for (const auto [x, y] : positions_of(width, height)) {
+      const bool in_front =
+          std::abs(2 * x - width) < width / 2 && std::abs(2 * y - height) < height / 2;
+      right.back().push_back(seen(x, y));
+      left.back().push_back(seen(x - (in_front ? front : background), y));
     }
   }
   return {photograph_of(left, width, height, kind), photograph_of(right, width, height, kind)};
+}
+
+DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
+                      const ExecutionOptions& how, const MatchRequest& request,
+                      MatchReport* report) {
+  Execution execution(how);
+  DisparityMaps maps;
+  StereoMatcher(options, execution).match(pair.left, pair.right, request, maps, report);
+  return maps;
 }
 
 Photograph crop(const Photograph& photograph, int first_column, int first_row, int width,
@@ -303,7 +294,9 @@ Tolerance tolerance_of(const MethodParameters& parameters) {
   return tolerance;
 }
 
-std::string name_of(MatchCost cost) { return test_name(cost_of(cost).name); }
-std::string name_of(Aggregation aggregation) { return test_name(aggregation_of(aggregation).name); }
+std::string case_name(MatchCost cost) { return test_name(cost_of(cost).name); }
+std::string case_name(Aggregation aggregation) {
+  return test_name(aggregation_of(aggregation).name);
+}
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
-
 #include "engine/execution.h"
-#include "engine/image/photograph.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/stereo_matcher.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_matching.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 enum class PixelKind { kGrey8, kColour8, kGrey16, kGreyFloat };
 
@@ -25,6 +23,12 @@ PhotographPair textured_pair(int width, int height, DisparityRange range, PixelK
 /// The pixels [first_column, first_column + width) × [first_row, first_row + height).
 Photograph crop(const Photograph& photograph, int first_column, int first_row, int width,
                 int height);
+
+/// Raw or refined maps as `options` ask for, by an Execution of its own.
+DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
+                      const ExecutionOptions& how = {.threads = 2},
+                      const MatchRequest& request = {.confidence = true},
+                      MatchReport* report = nullptr);
 
 /// How far matcher and oracle may be apart where nothing but rounding differs.
 struct Tolerance {
@@ -69,7 +73,7 @@ void expect_equals_oracle(const PhotographPair& pair, MatchOptions options, Exec
 Tolerance tolerance_of(const MethodParameters& parameters);
 
 /// For names of tests.
-std::string name_of(MatchCost cost);
-std::string name_of(Aggregation aggregation);
+std::string case_name(MatchCost cost);
+std::string case_name(Aggregation aggregation);
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,13 +1,8 @@
 #include "engine/order_statistics.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cstddef>
-#include <vector>
-
-namespace vantage {
-namespace {
+namespace vantage::order_statistics_test {
 
 const std::vector<float> kValues = {7, -2, 7, 0, 3, 12, -2, 5};
 
@@ -30,5 +25,4 @@ TEST(OrderStatistics, PercentilesHaveTheNearestRank) {
   EXPECT_EQ(percentile(std::vector(kValues), 1), 12);
 }
 
-}  // namespace
-}  // namespace vantage
+}  // namespace vantage::order_statistics_test

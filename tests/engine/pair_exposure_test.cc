@@ -1,23 +1,12 @@
 #include "engine/matching/pair_exposure.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <random>
-#include <utility>
-#include <vector>
-
 #include "engine/io/images/photograph_io.h"
 #include "engine/matching/estimation/intensity_change_fit.h"
 #include "engine/matching/stereo_matcher.h"
+#include "tests/engine/engine_test.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace pair_exposure_test {
+namespace vantage::pair_exposure_test {
 
 constexpr int kWidth = 240;
 constexpr DisparityRange kRange{0, 31};
@@ -100,8 +89,7 @@ void expect_near(const IntensityChange& actual, const IntensityChange& expected)
 }
 
 TEST(PairExposure, RecoversExposureDespiteOcclusions) {
-  Execution execution({.threads = 2});
-  const PairExposureEstimator estimator(kRange, execution);
+  const PairExposureEstimator estimator(kRange, execution());
   for (const int height : {60, 400}) {
     for (const IntensityChange change : {IntensityChange{}, IntensityChange{.7, 0},
                                          IntensityChange{1.25, -11}, IntensityChange{.5, 30}}) {
@@ -118,19 +106,16 @@ TEST(PairExposure, RecoversExposureDespiteOcclusions) {
 }
 
 TEST(PairExposure, ChannelsHaveTheirOwn) {
-  Execution execution({.threads = 2});
   Scene scene = make_scene(200, {{}, 1, 3});
   auto& right = std::get<Image<float>>(scene.right.pixels);
   const IntensityChange changes[] = {{.7, 10}, {1, 0}, {1.2, -5}};
-  for (int y = 0; y < right.height(); ++y) {
-    for (int x = 0; x < right.width(); ++x) {
-      for (int c = 0; c < 3; ++c) {
-        float& value = right.at(x, y, c);
-        value = static_cast<float>((changes[c].gain * 255 * value + changes[c].offset) / 255);
-      }
+  for (const auto [x, y] : positions_of(right)) {
+    for (int c = 0; c < 3; ++c) {
+      float& value = right.at(x, y, c);
+      value = static_cast<float>((changes[c].gain * 255 * value + changes[c].offset) / 255);
     }
   }
-  const PairExposure levels = PairExposureEstimator(kRange, execution)
+  const PairExposure levels = PairExposureEstimator(kRange, execution())
                                   .estimate(scene.left, scene.right, ColourUse::kChannels, true);
   ASSERT_TRUE(levels.has_intensity_change);
   for (std::size_t c = 0; c < 3; ++c) {
@@ -139,8 +124,7 @@ TEST(PairExposure, ChannelsHaveTheirOwn) {
 }
 
 TEST(PairExposure, NoMatchesLeaveLevelsAsTheyAre) {
-  Execution execution({.threads = 2});
-  const PairExposureEstimator estimator(kRange, execution);
+  const PairExposureEstimator estimator(kRange, execution());
   Image<std::uint8_t> grey(50, 40);
   grey.fill(90);
   const Photograph uniform{std::move(grey)};
@@ -170,13 +154,11 @@ double true_sigma(const Scene& scene) {
     }
     return std::max({0.0, value - high, low - value});
   };
-  for (int y = 0; y < left.height(); ++y) {
-    for (int x = 0; x < left.width(); ++x) {
-      if (scene.is_visible.at(x, y) != 0) {
-        const int partner = x - scene.disparity.at(x, y);
-        residuals.push_back(255 * std::min(outside(left.at(x, y), right, partner, y),
-                                           outside(right.at(partner, y), left, x, y)));
-      }
+  for (const auto [x, y] : positions_of(left)) {
+    if (scene.is_visible.at(x, y) != 0) {
+      const int partner = x - scene.disparity.at(x, y);
+      residuals.push_back(255 * std::min(outside(left.at(x, y), right, partner, y),
+                                         outside(right.at(partner, y), left, x, y)));
     }
   }
   std::ranges::sort(residuals);
@@ -184,8 +166,7 @@ double true_sigma(const Scene& scene) {
 }
 
 TEST(PairExposure, NoiseIsThatOfTrueMatches) {
-  Execution execution({.threads = 2});
-  const PairExposureEstimator estimator(kRange, execution);
+  const PairExposureEstimator estimator(kRange, execution());
   for (const double noise : {14., 18., 22.}) {
     const Scene scene = make_scene(300, {{}, noise, 1});
     const double expected = true_sigma(scene);
@@ -227,33 +208,30 @@ MatchOptions exposure_options(Side reference, MatchCost cost) {
 double share_of_right(const DisparityMap& map, const Scene& scene) {
   int right = 0;
   int all = 0;
-  for (int y = 0; y < map.height(); ++y) {
-    for (int x = 0; x < map.width(); ++x) {
-      if (scene.is_visible.at(x, y) != 0) {
-        ++all;
-        right += map.at(x, y) == static_cast<float>(scene.disparity.at(x, y)) ? 1 : 0;
-      }
+  for (const auto [x, y] : positions_of(map)) {
+    if (scene.is_visible.at(x, y) != 0) {
+      ++all;
+      right += map.at(x, y) == static_cast<float>(scene.disparity.at(x, y)) ? 1 : 0;
     }
   }
   return static_cast<double>(right) / all;
 }
 
 TEST(PairExposure, MatchersSeeThroughExposure) {
-  Execution execution({.threads = 2});
   const Scene scene = make_scene(200, {{.6, 12}, 2, 1});
   for (const MatchCost cost :
        {MatchCost::kSquared, MatchCost::kAbsolute, MatchCost::kContaminated}) {
     MatchOptions options = exposure_options(Side::kLeft, cost);
     DisparityMaps maps;
     MatchReport report;
-    StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
+    StereoMatcher(options, execution()).match(scene.left, scene.right, {}, maps, &report);
     EXPECT_FALSE(report.exposure);
     const double without = share_of_right(maps.left.disparity_px, scene);
     options.parameters.match_exposure = true;
     if (cost == MatchCost::kContaminated) {
       options.parameters.estimate_sigma_measurement = true;
     }
-    StereoMatcher(options, execution).match(scene.left, scene.right, {}, maps, &report);
+    StereoMatcher(options, execution()).match(scene.left, scene.right, {}, maps, &report);
     ASSERT_TRUE(report.exposure);
     EXPECT_TRUE(report.exposure->has_intensity_change);
     const double with = share_of_right(maps.left.disparity_px, scene);
@@ -263,14 +241,13 @@ TEST(PairExposure, MatchersSeeThroughExposure) {
 }
 
 TEST(PairExposure, SeveralImagesAreChangedEachByItsOwn) {
-  Execution execution({.threads = 2});
   const Scene dark = make_scene(200, {{.6, 12}, 1, 1});
   const Scene bright = make_scene(200, {{1.2, -8}, 1, 1});
   MatchOptions options = exposure_options(Side::kLeft, MatchCost::kAbsolute);
   options.parameters.match_exposure = true;
   DisparityMaps maps;
   MatchReport report;
-  const StereoMatcher matcher(options, execution);
+  const StereoMatcher matcher(options, execution());
   const OtherView others[] = {{&dark.right, 1}, {&bright.right, 1.0000001}};
   matcher.match_several(dark.left, others, {}, maps, &report);
   ASSERT_TRUE(report.exposure);
@@ -283,16 +260,14 @@ TEST(PairExposure, OfAPhotographTakenWithAnotherExposure) {
   if (!std::filesystem::exists(data)) {
     GTEST_SKIP() << "no photographs at " << data;
   }
-  Execution execution({.threads = 2});
   const Photograph left = read_photograph(data / "im0.png");
   const Photograph dark = read_photograph(data / "im1E.png");
   const PairExposure levels =
-      PairExposureEstimator({0, 69}, execution).estimate(left, dark, ColourUse::kLuma, true);
+      PairExposureEstimator({0, 69}, execution()).estimate(left, dark, ColourUse::kLuma, true);
   ASSERT_TRUE(levels.has_intensity_change);
   // The mean levels differ by 41.
   EXPECT_GT(levels.of_right.luma.gain * 100 + levels.of_right.luma.offset, 120);
   EXPECT_LT(*levels.sigma_measurement, 9);
 }
 
-}  // namespace pair_exposure_test
-}  // namespace vantage
+}  // namespace vantage::pair_exposure_test

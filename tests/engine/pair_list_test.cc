@@ -1,20 +1,9 @@
 #include "engine/sequence/pair_list.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <random>
-#include <string>
-#include <vector>
+namespace vantage::pair_list_test {
 
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace pair_list_test {
-
-using test::error_of;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using namespace std::string_literals;
 
 /// "left|right" of every pair.
@@ -149,13 +138,12 @@ TEST(PairList, AnyTextIsPairsOrAnErrorOfOneLine) {
 
 TEST(PairList, FilesAreReadOrNamed) {
   const TemporaryFolder folder;
-  test::put_text(folder / "list.csv", "a,b\n");
+  put_text(folder / "list.csv", "a,b\n");
   EXPECT_EQ(read_pair_list(folder / "list.csv").size(), 1U);
   EXPECT_THAT(error_of([&] { read_pair_list(folder / "no.csv"); }), HasSubstr("no such file"));
-  test::put_text(folder / "list.csv", "a\n");
+  put_text(folder / "list.csv", "a\n");
   EXPECT_THAT(error_of([&] { read_pair_list(folder / "list.csv"); }),
               HasSubstr(folder / "list.csv" + " line 1: "));
 }
 
-}  // namespace pair_list_test
-}  // namespace vantage
+}  // namespace vantage::pair_list_test

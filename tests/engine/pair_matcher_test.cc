@@ -1,22 +1,11 @@
 #include "engine/matching/pair_matcher.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/image/pixel_buffer.h"
 #include "engine/matching/range_estimation.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/random_grey.h"
 
-namespace vantage {
-namespace pair_matcher_test {
+namespace vantage::pair_matcher_test {
 
 constexpr int kWidth = 61;
 constexpr int kHeight = 37;
@@ -26,14 +15,12 @@ constexpr int kHeight = 37;
 template <typename T>
 std::vector<T> colours(int shift, int channels, T max) {
   std::vector<T> values;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = shift; x < kWidth + shift; ++x) {
-      for (int c = 0; c < channels; ++c) {
-        const unsigned hash = (static_cast<unsigned>(y * 977 + x) * 2654435761U +
-                               static_cast<unsigned>(c) * 40503U) >>
-                              8U;
-        values.push_back(static_cast<T>(static_cast<double>(max) * (hash % 251) / 250));
-      }
+  for (const auto [x, y] : positions_of({shift, kWidth + shift}, {0, kHeight})) {
+    for (int c = 0; c < channels; ++c) {
+      const unsigned hash =
+          (static_cast<unsigned>(y * 977 + x) * 2654435761U + static_cast<unsigned>(c) * 40503U) >>
+          8U;
+      values.push_back(static_cast<T>(static_cast<double>(max) * (hash % 251) / 250));
     }
   }
   return values;
@@ -71,8 +58,8 @@ void expect_borrowed_pixels_match_alike(T max) {
       DisparityMaps of_copies;
       matcher.match(borrowed, photograph_of(buffer_of(right, channels)), {}, of_borrowed);
       matcher.match(copied, copied_photograph(buffer_of(right, channels)), {}, of_copies);
-      EXPECT_TRUE(test::identical(of_borrowed.left.disparity_px, of_copies.left.disparity_px));
-      EXPECT_TRUE(test::identical(of_borrowed.right.disparity_px, of_copies.right.disparity_px));
+      EXPECT_TRUE(identical(of_borrowed.left.disparity_px, of_copies.left.disparity_px));
+      EXPECT_TRUE(identical(of_borrowed.right.disparity_px, of_copies.right.disparity_px));
     }
   }
 }
@@ -107,12 +94,7 @@ TEST(PixelBufferTest, OtherLayoutsAreCopied) {
 TEST(PixelBufferTest, RefusesWhatNoPhotographHas) {
   std::vector<float> values(12, 0.5F);
   const auto expect_refused = [&](PixelBuffer<float> buffer, const char* message) {
-    try {
-      (void)photograph_of(buffer);
-      ADD_FAILURE() << "expected: " << message;
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr(message));
-    }
+    EXPECT_THAT(error_of([&] { (void)photograph_of(buffer); }), HasSubstr(message));
   };
   expect_refused({.data = values.data(), .width_px = 0, .height_px = 3}, "0x3 pixels");
   expect_refused({.data = values.data(), .width_px = 2, .height_px = 2, .channels = 2},
@@ -139,7 +121,7 @@ TEST(PairMatcherTest, FindsTheRangeOfEachPair) {
     EXPECT_FALSE(used.disparities_auto);
     DisparityMaps expected;
     StereoMatcher(used).match(images[0], images[1], {}, expected);
-    EXPECT_TRUE(test::identical(maps.left.disparity_px, expected.left.disparity_px));
+    EXPECT_TRUE(identical(maps.left.disparity_px, expected.left.disparity_px));
     EXPECT_NEAR(maps.left.disparity_px.at(kWidth / 2, kHeight / 2), shift, 0.5);
   }
 }
@@ -156,11 +138,10 @@ TEST(PairMatcherTest, WithoutARequestTheMapIsThatOfTheReference) {
   for (const Side side : {Side::kLeft, Side::kRight}) {
     options.reference = side;
     PairMatcher(options).match(left_image, right_image, map);
-    EXPECT_TRUE(test::identical(map.disparity_px, both.of(side).disparity_px));
-    EXPECT_TRUE(test::identical(map.unmatched, both.of(side).unmatched));
+    EXPECT_TRUE(identical(map.disparity_px, both.of(side).disparity_px));
+    EXPECT_TRUE(identical(map.unmatched, both.of(side).unmatched));
   }
-  EXPECT_FALSE(test::identical(map.disparity_px, both.left.disparity_px));
+  EXPECT_FALSE(identical(map.disparity_px, both.left.disparity_px));
 }
 
-}  // namespace pair_matcher_test
-}  // namespace vantage
+}  // namespace vantage::pair_matcher_test

@@ -1,29 +1,11 @@
 #include "engine/sequence/pair_source.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
-
+#include "tests/engine/engine_test.h"
 #include "tests/engine/frame_test_support.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace pair_source_test {
+namespace vantage::pair_source_test {
 
-using test::error_of;
-using test::put_image;
-using test::put_images;
-using test::put_text;
-using test::put_video;
-using test::value_of;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Pair;
 
 using Values = std::vector<std::pair<int, int>>;
@@ -321,7 +303,7 @@ TEST(PairSource, PackedImages) {
   std::filesystem::create_directory(folder / "p");
   for (const int i : {0, 1, 2}) {
     Photograph packed;
-    pack_stereo(test::plain_photograph(3, 5, i), test::plain_photograph(3, 5, 100 + i),
+    pack_stereo(plain_photograph(3, 5, i), plain_photograph(3, 5, 100 + i),
                 {.above_below = true, .right_first = true}, packed);
     write_photograph(folder / ("p/" + std::to_string(i) + ".png"), packed);
   }
@@ -350,8 +332,8 @@ TEST(PairSource, PackedVideo) {
   VideoWriter writer(folder / "v.mp4", 64, 32, {});
   for (const int i : {0, 1, 2, 3}) {
     Photograph packed;
-    pack_stereo(test::plain_photograph(32, 32, 20 + 20 * i),
-                test::plain_photograph(32, 32, 120 + 20 * i), {}, packed);
+    pack_stereo(plain_photograph(32, 32, 20 + 20 * i), plain_photograph(32, 32, 120 + 20 * i), {},
+                packed);
     writer.write(packed);
   }
   writer.finish();
@@ -551,5 +533,4 @@ TEST(PairSource, FilesAndAPackedVideoOfOneDrive) {
   EXPECT_EQ(of_video.right.height(), of_files.right.height());
 }
 
-}  // namespace pair_source_test
-}  // namespace vantage
+}  // namespace vantage::pair_source_test

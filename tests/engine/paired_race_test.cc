@@ -1,14 +1,8 @@
 #include "engine/tuning/paired_race.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <map>
-#include <utility>
-#include <vector>
-
-namespace vantage {
-namespace paired_race_test {
+namespace vantage::paired_race_test {
 
 TunedSettings strips_of(int width_px) { return {.strip_width_px = width_px}; }
 
@@ -145,5 +139,4 @@ TEST(Median, IsTheMiddle) {
   EXPECT_NEAR(spread({1, 2, 3, 4, 5}), 1.4826, 1e-12);
 }
 
-}  // namespace paired_race_test
-}  // namespace vantage
+}  // namespace vantage::paired_race_test

@@ -1,26 +1,12 @@
 // Pairs of made-up frames: bad ones, gaps in time, ends that come early.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-#include <memory>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "engine/sequence/moving_camera_pairs.h"
 #include "engine/sequence/packed_pairs.h"
 #include "engine/sequence/two_camera_pairs.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/frame_test_support.h"
 
-namespace vantage {
-namespace pairing_test {
-
-using test::error_of;
-using test::value_of;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+namespace vantage::pairing_test {
 
 /// A video whose frames have their index as value.
 class MadeUpVideo : public FrameSource {
@@ -37,7 +23,7 @@ class MadeUpVideo : public FrameSource {
     if (bad.contains(index)) {
       throw Error(describe(index) + " is bad");
     }
-    frame.picture = test::plain_picture(2, 2, index);
+    frame.picture = plain_picture(2, 2, index);
     frame.frames_missing = missing.contains(index) ? missing[index] : 0;
     frame.remarks.assign(frame.frames_missing > 0 ? 1 : 0, describe(index) + " comes late");
     return true;
@@ -184,5 +170,4 @@ TEST(MovingCameraPairs, EveryFrameIsDecodedOnce) {
   EXPECT_EQ(counted.fetched, 30);
 }
 
-}  // namespace pairing_test
-}  // namespace vantage
+}  // namespace vantage::pairing_test

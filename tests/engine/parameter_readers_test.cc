@@ -4,21 +4,9 @@
 #include "engine/matching/windows/window_level.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cstring>
 #include <deque>
-#include <functional>
-#include <iterator>
-#include <map>
-#include <set>
-#include <string>
-#include <vector>
 
-#include "engine/error.h"
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/costs/cost_image.h"
@@ -28,17 +16,13 @@
 #include "engine/matching/pair_exposure.h"
 #include "engine/matching/search/coarse_to_fine/level_search.h"
 #include "engine/refinement/refinement_options.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/option_complaint.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/table_keys.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace parameter_readers_test {
-
-using test::complaint;
-
-using testing::HasSubstr;
+namespace vantage::parameter_readers_test {
 
 constexpr int kWidth = 31;
 constexpr int kHeight = 17;
@@ -50,13 +34,11 @@ using Bytes = std::vector<float>;
 class Maps {
  public:
   Maps() {
-    pair_ = test::textured_pair(kWidth, kHeight, kRange, test::PixelKind::kColour8, 5);
+    pair_ = textured_pair(kWidth, kHeight, kRange, PixelKind::kColour8, 5);
     // Another exposure, and noise that is not that of the book's parameters.
     auto& right = std::get<Image<std::uint8_t>>(pair_.right.pixels);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int i = 0; i < kWidth * right.channels(); ++i) {
-        right.row(y)[i] = static_cast<std::uint8_t>(right.row(y)[i] * 3 / 4 + 20);
-      }
+    for (const auto [i, y] : positions_of(kWidth * right.channels(), kHeight)) {
+      right.row(y)[i] = static_cast<std::uint8_t>(right.row(y)[i] * 3 / 4 + 20);
     }
   }
 
@@ -125,7 +107,7 @@ class Maps {
   }
 
   Execution execution_{{.threads = 1}};
-  test::PhotographPair pair_;
+  PhotographPair pair_;
   std::deque<std::pair<MethodParameters, Bytes>> known_;  // deque: of() hands out references
 };
 
@@ -200,8 +182,8 @@ const std::map<std::string_view, Changes>& changes() {
   return all;
 }
 
-const std::vector<MatchCost> kCosts = test::all_costs();
-const std::vector<Aggregation> kAggregations = test::all_aggregations();
+const std::vector<MatchCost> kCosts = all_costs();
+const std::vector<Aggregation> kAggregations = all_aggregations();
 
 /// Levels, and what Bayesian diffusion is asked for besides.
 struct Situation {
@@ -214,7 +196,7 @@ constexpr std::array kSituations = {Situation{1, 0, 1, Certainty::kMargin},
                                     Situation{3, 0, 0.3, Certainty::kEntropy},
                                     Situation{3, 1, 1, Certainty::kMargin}};
 
-MethodParameters parameters_of(const test::SampleRow& row) {
+MethodParameters parameters_of(const SampleRow& row) {
   const Situation& situation = kSituations[static_cast<std::size_t>(row[2])];
   MethodOverrides overrides;
   overrides.cost = kCosts[static_cast<std::size_t>(row[0])];
@@ -244,12 +226,7 @@ MethodParameters parameters_of(const test::SampleRow& row) {
 }
 
 bool is_valid(const MethodParameters& parameters) {
-  try {
-    validate(parameters);
-    return true;
-  } catch (const UsageError&) {
-    return false;
-  }
+  return error_of([&] { validate(parameters); }).empty();
 }
 
 /// Where a parameter is read, but no other value can be had or makes a difference.
@@ -348,15 +325,15 @@ TEST(ParameterReaders, AreNamedFromTheTables) {
 }
 
 TEST(ParameterReaders, AreThoseWhoseMapsChange) {
-  SCOPED_TRACE(test::sample_name());
+  SCOPED_TRACE(sample_name());
   Maps maps;
   const auto rows =
-      test::sampled_rows({static_cast<int>(kCosts.size()), static_cast<int>(kAggregations.size()),
-                          static_cast<int>(kSituations.size())});
+      sampled_rows({static_cast<int>(kCosts.size()), static_cast<int>(kAggregations.size()),
+                    static_cast<int>(kSituations.size())});
   // A third of them takes long enough: what reads a parameter is a matter of cost or aggregation.
-  const std::size_t step = test::runs_everything() ? 1 : 3;
-  for (std::size_t i = test::sample_seed() % step; i < rows.size(); i += step) {
-    const test::SampleRow& row = rows[i];
+  const std::size_t step = runs_everything() ? 1 : 3;
+  for (std::size_t i = sample_seed() % step; i < rows.size(); i += step) {
+    const SampleRow& row = rows[i];
     const MethodParameters before = parameters_of(row);
     ASSERT_TRUE(is_valid(before));
     for (const MethodField& field : fields_of_method()) {
@@ -447,5 +424,4 @@ TEST(Refinement, WhatNothingReadsIsRefused) {
   EXPECT_EQ(complaint(options), "");
 }
 
-}  // namespace parameter_readers_test
-}  // namespace vantage
+}  // namespace vantage::parameter_readers_test

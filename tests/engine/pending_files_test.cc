@@ -1,24 +1,10 @@
 #include "engine/sequence/pending_files.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <filesystem>
-#include <set>
-#include <string>
-#include <thread>
-#include <vector>
-
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace pending_files_test {
+namespace vantage::pending_files_test {
 
 namespace fs = std::filesystem;
-using test::bytes_of;
-using test::error_of;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -96,5 +82,4 @@ TEST_F(PendingFilesTest, LeaveNothingWhenTheyAreGivenUp) {
               HasSubstr(path("none/a").string()));
 }
 
-}  // namespace pending_files_test
-}  // namespace vantage
+}  // namespace vantage::pending_files_test

@@ -1,37 +1,18 @@
 #include "engine/synthesis/photograph_grid.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <random>
-
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
+#include "tests/engine/every_execution.h"
 
-namespace vantage {
-namespace photograph_grid_test {
-
-using test::error_of;
-using testing::HasSubstr;
+namespace vantage::photograph_grid_test {
 
 constexpr double kHalf = 0.55;  // and what interpolation may be off by
-
-Execution& execution() {
-  static Execution instance({.threads = 2});
-  return instance;
-}
 
 /// Maps whose disparity is the column or the line.
 DisparityMap counting_map(int width, int height, bool lines) {
   DisparityMap map(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      map.at(x, y) = static_cast<float>(lines ? y : x);
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    map.at(x, y) = static_cast<float>(lines ? y : x);
   }
   return map;
 }
@@ -44,7 +25,7 @@ TEST(PhotographGrid, PhotographPixelsHaveTheNearestRectifiedPixelsDisparity) {
   int beyond = 0;
   for (const auto& [width, height, coefficients] :
        {std::array{160, 121, 5}, {131, 17, 14}, {37, 43, 8}}) {
-    const Rectifier rectifier(test::random_calibration(random, width, height, coefficients), width,
+    const Rectifier rectifier(random_calibration(random, width, height, coefficients), width,
                               height);
     const PhotographGrid grid(rectifier, execution());
     for (const Side side : {Side::kLeft, Side::kRight}) {
@@ -52,16 +33,14 @@ TEST(PhotographGrid, PhotographPixelsHaveTheNearestRectifiedPixelsDisparity) {
       Image<float> lines;
       grid.bring(side, counting_map(width, height, false).view(), columns);
       grid.bring(side, counting_map(width, height, true).view(), lines);
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          const auto exact = rectifier.rectified_position(side, {x, y});
-          ASSERT_TRUE(exact);
-          const bool is_inside = exact->x() >= 0 && exact->x() <= width - 1 && exact->y() >= 0 &&
-                                 exact->y() <= height - 1;
-          ++(is_inside ? inside : beyond);
-          ASSERT_NEAR(columns.at(x, y), std::clamp(exact->x(), 0.0, width - 1.0), kHalf);
-          ASSERT_NEAR(lines.at(x, y), std::clamp(exact->y(), 0.0, height - 1.0), kHalf);
-        }
+      for (const auto [x, y] : positions_of(width, height)) {
+        const auto exact = rectifier.rectified_position(side, {x, y});
+        ASSERT_TRUE(exact);
+        const bool is_inside = exact->x() >= 0 && exact->x() <= width - 1 && exact->y() >= 0 &&
+                               exact->y() <= height - 1;
+        ++(is_inside ? inside : beyond);
+        ASSERT_NEAR(columns.at(x, y), std::clamp(exact->x(), 0.0, width - 1.0), kHalf);
+        ASSERT_NEAR(lines.at(x, y), std::clamp(exact->y(), 0.0, height - 1.0), kHalf);
       }
     }
   }
@@ -71,7 +50,7 @@ TEST(PhotographGrid, PhotographPixelsHaveTheNearestRectifiedPixelsDisparity) {
 
 TEST(PhotographGrid, UnknownStaysUnknown) {
   std::mt19937 random(2);
-  const Rectifier rectifier(test::random_calibration(random, 40, 30, 4), 40, 30);
+  const Rectifier rectifier(random_calibration(random, 40, 30, 4), 40, 30);
   DisparityMap map(40, 30);
   map.fill(std::numeric_limits<float>::quiet_NaN());
   Image<float> result;
@@ -96,41 +75,35 @@ TEST(PhotographGrid, PixelsThatNoRayReachesAreUnknown) {
   PhotographGrid(rectifier, execution())
       .bring(Side::kLeft, counting_map(kSize, kSize, false).view(), columns);
   int unknown = 0;
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const auto exact = rectifier.rectified_position(Side::kLeft, {x, y});
-      ASSERT_EQ(std::isnan(columns.at(x, y)), !exact.has_value());
-      if (exact) {
-        ASSERT_NEAR(columns.at(x, y), std::clamp(exact->x(), 0.0, kSize - 1.0), kHalf);
-      }
-      unknown += exact ? 0 : 1;
+  for (const auto [x, y] : positions_of(kSize, kSize)) {
+    const auto exact = rectifier.rectified_position(Side::kLeft, {x, y});
+    ASSERT_EQ(std::isnan(columns.at(x, y)), !exact.has_value());
+    if (exact) {
+      ASSERT_NEAR(columns.at(x, y), std::clamp(exact->x(), 0.0, kSize - 1.0), kHalf);
     }
+    unknown += exact ? 0 : 1;
   }
   EXPECT_GT(unknown, 100);
 }
 
 TEST(PhotographGrid, IsTheSameForEveryExecutorAndKeepsItsMemory) {
   std::mt19937 random(3);
-  const Rectifier rectifier(test::random_calibration(random, 131, 77, 5), 131, 77);
+  const Rectifier rectifier(random_calibration(random, 131, 77, 5), 131, 77);
   const DisparityMap map = counting_map(131, 77, false);
-  Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-  Image<float> expected;
-  PhotographGrid(rectifier, serial).bring(Side::kLeft, map.view(), expected);
-  for (const auto kind : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
-    Execution other({.threads = 3, .executor = kind});
-    const PhotographGrid grid(rectifier, other);
+  expect_equal_for_every_execution([&](Execution& execution) {
+    const PhotographGrid grid(rectifier, execution);
     Image<float> result;
     grid.bring(Side::kLeft, map.view(), result);
     const float* memory = result.row(0);
     grid.bring(Side::kLeft, map.view(), result);
     EXPECT_EQ(result.row(0), memory);
-    EXPECT_TRUE(test::same({std::move(result)}, {expected.copy()}));
-  }
+    return values_of(result);
+  });
 }
 
 TEST(PhotographGrid, RefusesAMapOfAnotherSize) {
   std::mt19937 random(4);
-  const Rectifier rectifier(test::random_calibration(random, 40, 30, 4), 40, 30);
+  const Rectifier rectifier(random_calibration(random, 40, 30, 4), 40, 30);
   const PhotographGrid grid(rectifier, execution());
   Image<float> result;
   EXPECT_THAT(
@@ -138,5 +111,4 @@ TEST(PhotographGrid, RefusesAMapOfAnotherSize) {
       HasSubstr("is 41x30, expected 40x30"));
 }
 
-}  // namespace photograph_grid_test
-}  // namespace vantage
+}  // namespace vantage::photograph_grid_test

@@ -1,27 +1,14 @@
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/files/file_bytes.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
 #include <opencv2/imgcodecs.hpp>
 
 #include "engine/io/files/atomic_file.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/test_paths.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace photograph_io_test {
-
-using test::bytes_of;
-using test::error_of;
-using test::noise;
-using test::put_bytes;
-using test::put_text;
-using test::same;
-using ::testing::HasSubstr;
+namespace vantage::photograph_io_test {
 
 constexpr std::pair<int, int> kSizes[] = {{1, 1}, {1, 7}, {13, 1}, {3, 5}, {31, 17}, {67, 19}};
 
@@ -97,21 +84,17 @@ TEST(PhotographIo, JpegKeepsSmoothColoursAndTheirOrder) {
   const TemporaryFolder folder;
   Photograph photograph{Image<std::uint8_t>(37, 21, 3)};
   auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
-  for (int y = 0; y < 21; ++y) {
-    for (int x = 0; x < 37; ++x) {
-      image.at(x, y, 0) = static_cast<std::uint8_t>(100 + 3 * x);
-      image.at(x, y, 1) = static_cast<std::uint8_t>(40 + 2 * y);
-      image.at(x, y, 2) = 20;
-    }
+  for (const auto [x, y] : positions_of(37, 21)) {
+    image.at(x, y, 0) = static_cast<std::uint8_t>(100 + 3 * x);
+    image.at(x, y, 1) = static_cast<std::uint8_t>(40 + 2 * y);
+    image.at(x, y, 2) = 20;
   }
   write_photograph(folder / "a.jpg", photograph);
   const Photograph read = read_photograph(folder / "a.jpg");
   const auto& result = std::get<Image<std::uint8_t>>(read.pixels);
   ASSERT_EQ(result.channels(), 3);
-  for (int y = 0; y < 21; ++y) {
-    for (int i = 0; i < 37 * 3; ++i) {
-      EXPECT_NEAR(result.row(y)[i], image.row(y)[i], 12);
-    }
+  for (const auto [i, y] : positions_of(37 * 3, 21)) {
+    EXPECT_NEAR(result.row(y)[i], image.row(y)[i], 12);
   }
 }
 
@@ -428,7 +411,7 @@ TEST(PhotographIo, ReadsSharedPhotographsOfEveryFolder) {
     if (extension != ".png" && extension != ".jpg" && extension != ".ppm" && extension != ".pgm") {
       continue;
     }
-    if (++read[file.parent_path() / extension] > 2 && !test::runs_everything()) {
+    if (++read[file.parent_path() / extension] > 2 && !runs_everything()) {
       continue;
     }
     const Photograph photograph = read_photograph(file);
@@ -440,5 +423,4 @@ TEST(PhotographIo, ReadsSharedPhotographsOfEveryFolder) {
   EXPECT_FALSE(read.empty());
 }
 
-}  // namespace photograph_io_test
-}  // namespace vantage
+}  // namespace vantage::photograph_io_test

@@ -1,12 +1,7 @@
 #include "tests/engine/plain_aggregation.h"
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <utility>
-
-namespace vantage::test {
+namespace vantage::inline test {
 namespace {
 
 constexpr std::array<std::pair<int, int>, 4> kNeighbours = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
@@ -35,31 +30,16 @@ double log_of_sum_of_exponentials(const std::vector<double>& exponents) {
 /// (6.25), (6.36): p ∝ exp(−E) down each column.
 Volume probabilities_of(const Volume& energies) {
   Volume result = Volume::like(energies);
-  for (int y = 0; y < energies.height; ++y) {
-    for (int x = 0; x < energies.width; ++x) {
-      std::vector<double> exponents = column_of(energies, x, y);
-      for (double& exponent : exponents) {
-        exponent = -exponent;
-      }
-      const double log_sum = log_of_sum_of_exponentials(exponents);
-      for (int i = 0; i < energies.count(); ++i) {
-        result.at(x, y, i) = std::exp(exponents[static_cast<std::size_t>(i)] - log_sum);
-      }
+  for (const auto [x, y] : positions_of(energies.width, energies.height)) {
+    std::vector<double> exponents = column_of(energies, x, y);
+    for (double& exponent : exponents) {
+      exponent = -exponent;
+    }
+    const double log_sum = log_of_sum_of_exponentials(exponents);
+    for (int i = 0; i < energies.count(); ++i) {
+      result.at(x, y, i) = std::exp(exponents[static_cast<std::size_t>(i)] - log_sum);
     }
   }
-  return result;
-}
-
-/// (6.33): pS = wP * p along d.
-Volume convolved(const Volume& probabilities, const std::vector<double>& kernel) {
-  const int count = probabilities.count();
-  Volume result = Volume::like(probabilities);
-  for_each_cell(probabilities, [&](int x, int y, int i) {
-    for (int j = 0; j < count; ++j) {
-      result.at(x, y, i) +=
-          kernel[static_cast<std::size_t>(j - i + count - 1)] * probabilities.at(x, y, j);
-    }
-  });
   return result;
 }
 
@@ -72,14 +52,12 @@ Volume smooth_energies(const Volume& energies, const MethodParameters& parameter
     penalties.push_back(plain_penalty(parameters, offset_px * offset_px));
   }
   Volume result = Volume::like(energies);
-  for (int y = 0; y < energies.height; ++y) {
-    for (int x = 0; x < energies.width; ++x) {
-      const std::vector<double> column = column_of(energies, x, y);
-      for (int i = 0; i < count; ++i) {
-        const auto first = penalties.begin() + (count - 1 - i);
-        result.at(x, y, i) =
-            plain_support({first, first + count}, column, parameters.prior_smoothing);
-      }
+  for (const auto [x, y] : positions_of(energies.width, energies.height)) {
+    const std::vector<double> column = column_of(energies, x, y);
+    for (int i = 0; i < count; ++i) {
+      const auto first = penalties.begin() + (count - 1 - i);
+      result.at(x, y, i) =
+          plain_support({first, first + count}, column, parameters.prior_smoothing);
     }
   }
   return result;
@@ -87,13 +65,11 @@ Volume smooth_energies(const Volume& energies, const MethodParameters& parameter
 
 /// What a column's candidates share cancels in (6.36).
 void subtract_minima(Volume& energies) {
-  for (int y = 0; y < energies.height; ++y) {
-    for (int x = 0; x < energies.width; ++x) {
-      const std::vector<double> column = column_of(energies, x, y);
-      const double min = *std::min_element(column.begin(), column.end());
-      for (int i = 0; i < energies.count(); ++i) {
-        energies.at(x, y, i) -= min;
-      }
+  for (const auto [x, y] : positions_of(energies.width, energies.height)) {
+    const std::vector<double> column = column_of(energies, x, y);
+    const double min = *std::min_element(column.begin(), column.end());
+    for (int i = 0; i < energies.count(); ++i) {
+      energies.at(x, y, i) -= min;
     }
   }
 }
@@ -278,32 +254,16 @@ Volume plain_local_stopping(const Volume& first, double lambda, Certainty certai
   Volume energies = first;
   for (int n = 0; n < iterations; ++n) {
     Volume next = plain_membrane(energies, lambda, 0, 1, nullptr, edges, n);
-    for (int y = 0; y < first.height; ++y) {
-      for (int x = 0; x < first.width; ++x) {
-        if (certainty_of(energies, x, y) > certainty_of(next, x, y)) {
-          for (int i = 0; i < first.count(); ++i) {
-            next.at(x, y, i) = energies.at(x, y, i);
-          }
+    for (const auto [x, y] : positions_of(first.width, first.height)) {
+      if (certainty_of(energies, x, y) > certainty_of(next, x, y)) {
+        for (int i = 0; i < first.count(); ++i) {
+          next.at(x, y, i) = energies.at(x, y, i);
         }
       }
     }
     energies = std::move(next);
   }
   return energies;
-}
-
-std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_prior) {
-  std::vector<double> kernel;
-  double sum = 0;
-  for (int k = -(count - 1); k <= count - 1; ++k) {
-    kernel.push_back((1 - epsilon_prior) * std::exp(-k * k / (2 * sigma_prior * sigma_prior)) +
-                     epsilon_prior);
-    sum += kernel.back();
-  }
-  for (double& weight : kernel) {
-    weight /= sum;
-  }
-  return kernel;
 }
 
 double plain_penalty(const MethodParameters& parameters, double k_squared) {
@@ -355,31 +315,4 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, c
   return probabilities_of(now);
 }
 
-Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters) {
-  const std::vector<double> kernel = prior_kernel(
-      energies.count(), parameters.sigma_prior * energies.steps, parameters.epsilon_prior);
-  const Volume first = probabilities_of(energies);
-  Volume probabilities = first;
-  for (int n = 0; n < parameters.iterations; ++n) {
-    const Volume smooth = convolved(probabilities, kernel);
-    for (int y = 0; y < first.height; ++y) {
-      for (int x = 0; x < first.width; ++x) {
-        double sum = 0;
-        for (int i = 0; i < first.count(); ++i) {
-          double product = smooth.at(x, y, i);
-          for (const auto& [dx, dy] : kNeighbours) {
-            product *= is_inside(first, x + dx, y + dy) ? smooth.at(x + dx, y + dy, i) : 1;
-          }
-          probabilities.at(x, y, i) = first.at(x, y, i) * std::sqrt(product);
-          sum += probabilities.at(x, y, i);
-        }
-        for (int i = 0; i < first.count(); ++i) {
-          probabilities.at(x, y, i) /= sum;
-        }
-      }
-    }
-  }
-  return probabilities;
-}
-
-}  // namespace vantage::test
+}  // namespace vantage::inline test

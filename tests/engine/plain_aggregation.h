@@ -1,10 +1,9 @@
 #pragma once
 
-#include <vector>
-
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_costs.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// Mean over the samples of a square window that lie inside both images (EQUATIONS §1; Fig. 1.11);
 /// NaN where a cell is no candidate: its partner, or with `valid` any of its window's, is outside.
@@ -52,9 +51,6 @@ double plain_negative_entropy(const std::vector<double>& column, double scale);
 Volume plain_local_stopping(const Volume& first, double lambda, Certainty certainty, double scale,
                             int iterations, const PlainEdges& edges = {});
 
-/// wP over the offsets −(D − 1) … D − 1, summing to 1 (6.33), of the contaminated Gaussian (6.19).
-std::vector<double> prior_kernel(int count, double sigma_prior, double epsilon_prior);
-
 /// ρP (6.18) of an offset of k pixels, in a two-dimensional search the length of that. With the
 /// largest term contamination is a term of its own, and 1 − εP is left out.
 double plain_penalty(const MethodParameters& parameters, double k_squared);
@@ -66,9 +62,6 @@ double plain_support(const std::vector<double>& penalties, const std::vector<dou
 /// the first iteration takes for the probabilities; null: those of the energies.
 Volume plain_bayes(const Volume& energies, const MethodParameters& parameters,
                    const Volume* start = nullptr, const PlainEdges& edges = {});
-/// The same for μ = ½ as products (EQUATIONS §3).
-Volume plain_bayes_products(const Volume& energies, const MethodParameters& parameters);
-
 /// The unit of costs in entropies (6.15): 1 ÷ (2 σM²), of evidence 1 ÷ σM.
 inline double plain_entropy_scale(const MethodParameters& parameters) {
   return parameters.cost == MatchCost::kGradient
@@ -76,4 +69,4 @@ inline double plain_entropy_scale(const MethodParameters& parameters) {
              : 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-#include <vector>
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// The energies of one pixel's candidates, and §3 written out for them in double.
 class PlainColumn {
@@ -67,4 +63,4 @@ class PlainColumn {
   int winner_ = -1;
 };
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

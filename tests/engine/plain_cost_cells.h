@@ -1,16 +1,10 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
-#include "engine/image/photograph.h"
 #include "engine/matching/costs/stage_cost.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_costs.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// A photograph the reference is compared with, and where its camera stands.
 struct PlainPartner {
@@ -289,4 +283,4 @@ class PlainCostCells {
   std::vector<Samples> samples_;
 };
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

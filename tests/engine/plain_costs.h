@@ -1,12 +1,9 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
-#include "engine/image/photograph.h"
 #include "engine/matching/options/match_options.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// A whole disparity space (6.1) in double precision: the oracle of all matching methods. Nothing
 /// of the engine's kernels, layouts or tricks is used to make one.
@@ -51,11 +48,9 @@ struct Volume {
 /// Calls visit(x, y, i) for every cell.
 template <typename Visit>
 void for_each_cell(const Volume& volume, Visit visit) {
-  for (int y = 0; y < volume.height; ++y) {
-    for (int x = 0; x < volume.width; ++x) {
-      for (int i = 0; i < volume.count(); ++i) {
-        visit(x, y, i);
-      }
+  for (const auto [x, y] : positions_of(volume.width, volume.height)) {
+    for (int i = 0; i < volume.count(); ++i) {
+      visit(x, y, i);
     }
   }
 }
@@ -102,4 +97,4 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
 /// Grey levels, luma of colours, as cells of one candidate.
 Volume plain_grey(const Photograph& photograph);
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,18 +1,14 @@
 #include "tests/engine/plain_levels.h"
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-
-namespace vantage::test {
+namespace vantage::inline test {
 namespace {
 
 /// Calls visit(x, y) for every column.
 template <typename Visit>
 void for_each_column(const Volume& volume, Visit visit) {
-  for (int y = 0; y < volume.height; ++y) {
-    for (int x = 0; x < volume.width; ++x) {
-      visit(x, y);
-    }
+  for (const auto [x, y] : positions_of(volume.width, volume.height)) {
+    visit(x, y);
   }
 }
 
@@ -34,11 +30,10 @@ Volume block_means(const Volume& finer) {
   for_each_cell(coarser, [&](int x, int y, int i) {
     double sum = 0;
     int samples = 0;
-    for (int v = 2 * y; v < std::min(2 * y + 2, finer.height); ++v) {
-      for (int u = 2 * x; u < std::min(2 * x + 2, finer.width); ++u) {
-        sum += finer.at(u, v, i);
-        ++samples;
-      }
+    for (const auto [u, v] : positions_of({2 * x, std::min(2 * x + 2, finer.width)},
+                                          {2 * y, std::min(2 * y + 2, finer.height)})) {
+      sum += finer.at(u, v, i);
+      ++samples;
     }
     coarser.at(x, y, i) = sum / samples;
   });
@@ -241,4 +236,4 @@ Volume plain_coarse_to_fine(const Volume& costs, const MethodParameters& paramet
   return plain_level(costs, &coarser, of_level, grey);
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

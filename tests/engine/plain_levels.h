@@ -2,7 +2,7 @@
 
 #include "tests/engine/plain_aggregation.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// What is stored of coarse levels.
 enum class StoredCells {
@@ -21,4 +21,4 @@ Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParam
 Volume plain_coarse_to_fine(const Volume& costs, const MethodParameters& parameters,
                             const Volume& grey, StoredCells stored);
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,12 +1,9 @@
 #include "tests/engine/plain_matching.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "engine/matching/costs/cost_table.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -79,10 +76,8 @@ Volume plain_aggregate(const Photograph& reference, const Photograph& other, Sid
 
 PlainMap plain_select(const Volume& energies, const MethodParameters& parameters) {
   PlainMap map{energies.width, energies.height, {}};
-  for (int y = 0; y < energies.height; ++y) {
-    for (int x = 0; x < energies.width; ++x) {
-      map.choices.push_back(choose(energies, x, y, parameters));
-    }
+  for (const auto [x, y] : positions_of(energies.width, energies.height)) {
+    map.choices.push_back(choose(energies, x, y, parameters));
   }
   return map;
 }
@@ -99,4 +94,4 @@ PlainMap plain_match(const Photograph& left, const Photograph& right, Side refer
                       parameters);
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <vector>
-
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_levels.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// What the oracle chose at one pixel; all NaN where there is no candidate.
 struct PlainChoice {
@@ -45,4 +44,4 @@ PlainMap plain_match(const Photograph& left, const Photograph& right, Side refer
 /// `range` without what no pixel of an image `width_px` wide can have.
 DisparityRange possible_range(DisparityRange range, int width_px);
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

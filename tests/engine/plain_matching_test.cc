@@ -1,28 +1,13 @@
 // The oracle itself, on cases small enough to work out by hand.
 #include "tests/engine/plain_matching.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-#include <cstdint>
-#include <numeric>
-#include <random>
-
-namespace vantage::test {
-namespace plain_matching_test {
+namespace vantage::plain_matching_test {
 
 Volume column_volume(const std::vector<double>& column) {
   Volume volume(1, 1, {0, static_cast<int>(column.size()) - 1}, Side::kLeft);
   volume.cells = column;
-  return volume;
-}
-
-Volume random_volume(int width, int height, DisparityRange range, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  Volume volume(width, height, range, Side::kLeft);
-  for (double& cell : volume.cells) {
-    cell = static_cast<double>(random() % 1000U) / 300.0;
-  }
   return volume;
 }
 
@@ -101,10 +86,8 @@ TEST(PlainCosts, ColourAndDepths) {
 
 TEST(PlainCosts, GainsOfGradientFilters) {
   Plane ramp{9, 9, {}};
-  for (int y = 0; y < 9; ++y) {
-    for (int x = 0; x < 9; ++x) {
-      ramp.values.push_back(3.0 * x - 5.0 * y);
-    }
+  for (const auto [x, y] : positions_of(9, 9)) {
+    ramp.values.push_back(3.0 * x - 5.0 * y);
   }
   const auto expect_gain = [&](GradientFilter filter, double gain) {
     for (const bool prefilter : {false, true}) {
@@ -228,26 +211,6 @@ TEST(PlainAggregation, BayesOfOnePixelByHand) {
   }
 }
 
-TEST(PlainAggregation, BayesProductsEqualLogarithms) {
-  MethodParameters parameters = book_parameters(MatchMethod::kBayes);
-  const Volume energies = random_volume(9, 7, {0, 12}, 3);
-  for (const double sigma : {.1, .4, 2.0}) {
-    parameters.sigma_prior = sigma;
-    const Volume logs = plain_bayes(energies, parameters);
-    const Volume products = plain_bayes_products(energies, parameters);
-    for (std::size_t i = 0; i < logs.cells.size(); ++i) {
-      ASSERT_NEAR(logs.cells[i], products.cells[i], 1e-12 * logs.cells[i]);
-    }
-    for (int x = 0; x < 9; ++x) {
-      double sum = 0;
-      for (int i = 0; i < logs.count(); ++i) {
-        sum += logs.at(x, 3, i);
-      }
-      EXPECT_NEAR(sum, 1, 1e-12);
-    }
-  }
-}
-
 TEST(PlainSelection, ByHand) {
   MethodParameters parameters = book_parameters(MatchMethod::kMembrane);
   Volume volume(4, 1, {0, 3}, Side::kLeft);
@@ -270,5 +233,4 @@ TEST(PlainSelection, ByHand) {
       std::isnan(plain_select(Volume(2, 1, {2, 3}, Side::kLeft), parameters).at(1, 0).disparity));
 }
 
-}  // namespace plain_matching_test
-}  // namespace vantage::test
+}  // namespace vantage::plain_matching_test

@@ -1,16 +1,9 @@
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <type_traits>
-#include <vector>
-
 #include "engine/image/image.h"
-#include "engine/image/photograph.h"
 #include "engine/synthesis/pair_warpers.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "tests/engine/engine_test.h"
 
 namespace vantage {
 

@@ -1,25 +1,15 @@
 #include "engine/io/images/png_decoder.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
+
 #include <libdeflate.h>
 
-#include <algorithm>
-#include <array>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <optional>
-#include <random>
-#include <type_traits>
-#include <vector>
 
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace png_decoder_test {
+namespace vantage::png_decoder_test {
 
 using Bytes = std::vector<std::uint8_t>;
-using test::noise;
-using test::same;
 
 constexpr std::array<std::array<int, 2>, 8> kSizes = {
     {{1, 1}, {1, 7}, {13, 1}, {3, 5}, {31, 17}, {67, 19}, {257, 300}, {700, 96}}};
@@ -185,5 +175,4 @@ TEST(PngDecoder, LeavesUnusualFilesToOthers) {
   EXPECT_FALSE(decoded(HandMade{2, 1, 8, 0, false, {0, 1, 2, 3}}.file())) << "too many bytes";
 }
 
-}  // namespace png_decoder_test
-}  // namespace vantage
+}  // namespace vantage::png_decoder_test

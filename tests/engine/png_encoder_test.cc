@@ -1,21 +1,13 @@
 #include "engine/io/images/png_encoder.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <array>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <utility>
-#include <vector>
 
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace png_encoder_test {
+namespace vantage::png_encoder_test {
 
 using Bytes = std::vector<std::uint8_t>;
-using test::noise;
 
 constexpr std::array<std::array<int, 2>, 6> kSizes = {
     {{1, 1}, {1, 7}, {13, 1}, {67, 19}, {257, 300}, {1400, 96}}};
@@ -40,11 +32,9 @@ template <typename T>
 Image<T> picture(int width, int height, int channels) {
   Photograph photograph = noise<T>(width, height, channels);
   auto& image = std::get<Image<T>>(photograph.pixels);
-  for (int y = 0; y < height; ++y) {
-    for (int x = width / 3; x < width; ++x) {
-      for (int c = 0; c < channels && (x * 7 + y * 3) % 11 != 0; ++c) {
-        image.at(x, y, c) = static_cast<T>(y % 5 == 0 ? 200 : x + 3 * y + c);
-      }
+  for (const auto [x, y] : positions_of({width / 3, width}, {0, height})) {
+    for (int c = 0; c < channels && (x * 7 + y * 3) % 11 != 0; ++c) {
+      image.at(x, y, c) = static_cast<T>(y % 5 == 0 ? 200 : x + 3 * y + c);
     }
   }
   return std::move(image);
@@ -81,5 +71,4 @@ TEST(PngEncoder, NothingOfAnImageWiderThanLibpngWrites) {
   EXPECT_TRUE(bytes.empty());
 }
 
-}  // namespace png_encoder_test
-}  // namespace vantage
+}  // namespace vantage::png_encoder_test

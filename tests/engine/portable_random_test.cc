@@ -1,11 +1,8 @@
 #include "engine/generation/portable_random.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-
-namespace vantage {
-namespace portable_random_test {
+namespace vantage::portable_random_test {
 
 TEST(PortableRandom, NormalNumbersHaveTheMomentsAndTailsOfANormalDistribution) {
   constexpr int kCount = 200000;
@@ -60,5 +57,4 @@ TEST(PortableRandom, SeedsAndStreamsDiffer) {
   }
 }
 
-}  // namespace portable_random_test
-}  // namespace vantage
+}  // namespace vantage::portable_random_test

@@ -1,24 +1,16 @@
 // Rotation averaging, positions and the adjustment of bundles, on exact geometry.
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <vector>
 
-#include "engine/error.h"
 #include "engine/pose_estimation/bundle_adjustment.h"
 #include "engine/pose_estimation/camera_positions.h"
 #include "engine/pose_estimation/feature_tracks.h"
 #include "engine/pose_estimation/rotation_averaging.h"
 #include "engine/rectification/rotations.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace pose_estimation_test {
+namespace vantage::pose_estimation_test {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kFocal = 500;
@@ -226,5 +218,4 @@ TEST(FeatureTracks, JoinWhatPairsShareUnlessAnImageWouldShowItTwice) {
   EXPECT_EQ(tracks[1], (std::vector<FeatureOfImage>{{0, 5}, {1, 7}, {2, 3}}));
 }
 
-}  // namespace pose_estimation_test
-}  // namespace vantage
+}  // namespace vantage::pose_estimation_test

@@ -1,25 +1,15 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
-#include <numbers>
-#include <string>
 
 #include "engine/io/files/text_lines.h"
 #include "engine/view_geometry/colmap_model.h"
 #include "engine/view_geometry/intrinsics_file.h"
 #include "engine/view_geometry/trajectory_file.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace pose_files_test {
-
-using test::error_of;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::pose_files_test {
 
 /// A quarter turn about Y, camera to world: the camera looks along the world's X.
 const Eigen::Matrix3d kToTheRight =
@@ -147,12 +137,12 @@ TEST(ColmapModel, SaysWhatIsWrongWithImages) {
 
 TEST(ColmapModel, AFolderNeedsTheTextModel) {
   const TemporaryFolder folder;
-  test::put_text(folder.path() / "cameras.bin", "x");
+  put_text(folder.path() / "cameras.bin", "x");
   EXPECT_THAT(error_of([&] { read_colmap_model(folder.path()); }), HasSubstr("model_converter"));
-  test::put_text(folder.path() / "cameras.txt", kCameras);
-  test::put_text(folder.path() / "images.txt", "# none\n");
+  put_text(folder.path() / "cameras.txt", kCameras);
+  put_text(folder.path() / "images.txt", "# none\n");
   EXPECT_THAT(error_of([&] { read_colmap_model(folder.path()); }), HasSubstr("holds no images"));
-  test::put_text(folder.path() / "images.txt", "1 1 0 0 0 0 0 0 1 a.png\n\n");
+  put_text(folder.path() / "images.txt", "1 1 0 0 0 0 0 0 1 a.png\n\n");
   EXPECT_EQ(read_colmap_model(folder.path()).size(), 1U);
 }
 
@@ -247,5 +237,4 @@ TEST(CameraPose, RelativePosesBringPointsFromOneCameraToTheOther) {
   EXPECT_LT((relative.rotation * seen(first) + relative.translation - seen(second)).norm(), 1e-12);
 }
 
-}  // namespace pose_files_test
-}  // namespace vantage
+}  // namespace vantage::pose_files_test

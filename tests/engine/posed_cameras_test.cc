@@ -1,28 +1,15 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "engine/generation/layered_scene.h"
 #include "engine/rectification/relative_pose.h"
 #include "engine/scene_graph/posed_edges.h"
 #include "engine/scene_graph/posed_pair.h"
 #include "engine/synthesis/blended_warper.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace posed_cameras_test {
-
-using test::error_of;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::posed_cameras_test {
 
 constexpr int kWidth = 120;
 constexpr int kHeight = 80;
@@ -81,11 +68,10 @@ TEST(PosedPair, RowsCorrespondInEveryDirectionAndNearIsLarge) {
 }
 
 TEST(PosedPair, MapsComeBackAsNearnessInTheOwnCamera) {
-  Execution execution({.threads = 2});
   const SceneCamera first = camera_at({0, 0, 0}, {1, -2, 4});
   const SceneCamera second = camera_at({0.2, 0.9, 0.1}, {-1, 1, -3});
   const StereoCalibration calibration = calibration_of(first, second, kWidth, kHeight);
-  const PosedPair pair(calibration, kWidth, kHeight, execution);
+  const PosedPair pair(calibration, kWidth, kHeight, execution());
   const RectifiedPair geometry =
       rectified_pair(calibration, kWidth, kHeight, {.kept_outline = 0.5, .any_direction = true});
   // The plane Z = 10 of each camera's own frame.
@@ -96,25 +82,21 @@ TEST(PosedPair, MapsComeBackAsNearnessInTheOwnCamera) {
     MatchedMap map;
     map.disparity_px.resize(geometry.width_px, geometry.height_px);
     map.unmatched.resize(geometry.width_px, geometry.height_px);
-    for (int y = 0; y < geometry.height_px; ++y) {
-      for (int x = 0; x < geometry.width_px; ++x) {
-        const Eigen::Vector3d ray = camera.matrix.inverse() * Eigen::Vector3d(x, y, 1);
-        const double nearness = normal.dot(ray);  // 1 / depth in the rectified frame
-        map.disparity_px.at(x, y) =
-            static_cast<float>(camera.matrix(0, 0) * geometry.baseline * nearness);
-        map.unmatched.at(x, y) = 0;
-      }
+    for (const auto [x, y] : positions_of(geometry.width_px, geometry.height_px)) {
+      const Eigen::Vector3d ray = camera.matrix.inverse() * Eigen::Vector3d(x, y, 1);
+      const double nearness = normal.dot(ray);  // 1 / depth in the rectified frame
+      map.disparity_px.at(x, y) =
+          static_cast<float>(camera.matrix(0, 0) * geometry.baseline * nearness);
+      map.unmatched.at(x, y) = 0;
     }
     const MatchedMap own = pair.on_photograph(side, map, 500);
     int known = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        if (own.unmatched.at(x, y) == 0) {
-          ++known;
-          EXPECT_NEAR(own.disparity_px.at(x, y), 500 * geometry.baseline / kDepth, 1e-3);
-        } else {
-          EXPECT_TRUE(std::isnan(own.disparity_px.at(x, y)));
-        }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      if (own.unmatched.at(x, y) == 0) {
+        ++known;
+        EXPECT_NEAR(own.disparity_px.at(x, y), 500 * geometry.baseline / kDepth, 1e-3);
+      } else {
+        EXPECT_TRUE(std::isnan(own.disparity_px.at(x, y)));
       }
     }
     EXPECT_GT(known, kWidth * kHeight / 3);
@@ -237,11 +219,9 @@ class BlendedViews : public testing::Test {
       images_.push_back(std::move(rendering.image));
       // Disparities of the scene are its focal length / depth.
       DisparityMap map(kWidth, kHeight);
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          map.at(x, y) = static_cast<float>(rendering.disparity.at(x, y) * kScale_px /
-                                            scene.focal_length_px());
-        }
+      for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+        map.at(x, y) =
+            static_cast<float>(rendering.disparity.at(x, y) * kScale_px / scene.focal_length_px());
       }
       maps_.push_back(std::move(map));
     }
@@ -282,10 +262,8 @@ class BlendedViews : public testing::Test {
     const auto& made = std::get<Image<std::uint8_t>>(view.image.pixels);
     const auto& truth = std::get<Image<std::uint8_t>>(images_[wanted].pixels);
     double sum = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth * 3; ++x) {
-        sum += std::abs(made.row(y)[x] - truth.row(y)[x]);
-      }
+    for (const auto [x, y] : positions_of(kWidth * 3, kHeight)) {
+      sum += std::abs(made.row(y)[x] - truth.row(y)[x]);
     }
     return sum / (kWidth * kHeight * 3);
   }
@@ -319,5 +297,4 @@ TEST_F(BlendedViews, DoNotDependOnTheExecution) {
   }
 }
 
-}  // namespace posed_cameras_test
-}  // namespace vantage
+}  // namespace vantage::posed_cameras_test

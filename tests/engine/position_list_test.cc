@@ -1,21 +1,10 @@
 #include "engine/scene_graph/position_list.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
 #include <fmt/format.h>
 
-#include <string>
-#include <vector>
-
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace position_list_test {
-
-using test::error_of;
-using testing::ElementsAre;
-using testing::HasSubstr;
+namespace vantage::position_list_test {
 
 std::vector<std::string> parsed(const std::string& text) {
   std::vector<std::string> images;
@@ -46,5 +35,4 @@ TEST(PositionList, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(problem(""), HasSubstr("holds no images"));
 }
 
-}  // namespace position_list_test
-}  // namespace vantage
+}  // namespace vantage::position_list_test

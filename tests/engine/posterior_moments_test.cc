@@ -1,21 +1,12 @@
 // Mean and variance of p(d) against those of the plain transcription's probabilities.
 #include "engine/matching/volume/posterior_moments.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <set>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace posterior_moments_test {
+namespace vantage::posterior_moments_test {
 
 constexpr DisparityRange kRange{-3, 17};
 constexpr int kWidth = 43;
@@ -58,11 +49,10 @@ TEST(PosteriorMoments, OfNumbers) {
 }
 
 TEST(PosteriorMoments, EqualThePlainTranscription) {
-  const test::PhotographPair pair =
-      test::textured_pair(kWidth, kHeight, kRange, test::PixelKind::kGrey8, 5);
+  const PhotographPair pair = textured_pair(kWidth, kHeight, kRange, PixelKind::kGrey8, 5);
   Execution execution({.threads = 2, .strip_width_px = 19});
   int methods = 0;
-  for (const test::MethodCase& method : test::method_cases(kRange)) {
+  for (const MethodCase& method : method_cases(kRange)) {
     const MethodParameters parameters = method.options.resolved();
     if (!kMethods.contains(method.name)) {
       continue;
@@ -74,36 +64,33 @@ TEST(PosteriorMoments, EqualThePlainTranscription) {
     const VolumeRequest request{.side = Side::kRight, .sink = &moments};
     StereoMatcher(method.options, execution)
         .match(pair.left, pair.right, {.volumes = {&request, 1}}, maps);
-    const test::Volume energies =
-        test::plain_aggregate(pair.right, pair.left, Side::kRight, kRange, parameters);
-    // Rounding of the cells: test::is_stepped().
-    const double tolerance = test::is_stepped(method) ? 0.05 : 6e-3;
+    const Volume energies =
+        plain_aggregate(pair.right, pair.left, Side::kRight, kRange, parameters);
+    // Rounding of the cells: is_stepped().
+    const double tolerance = is_stepped(method) ? 0.05 : 6e-3;
     int wrong = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        double total = 0;
-        double first = 0;
-        double second = 0;
-        for (int i = 0; i < kRange.count(); ++i) {
-          const double d = kRange.min + i;
-          const double p = energies.has_partner(x, i) ? std::exp(-energies.at(x, y, i)) : 0;
-          total += p;
-          first += p * d;
-          second += p * d * d;
-        }
-        const double mean = first / total;
-        const double variance = second / total - mean * mean;
-        wrong += std::abs(moments.mean_px().at(x, y) - mean) <= tolerance &&
-                         std::abs(moments.variance_px2().at(x, y) - variance) <=
-                             10 * tolerance * std::max(1.0, variance)
-                     ? 0
-                     : 1;
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      double total = 0;
+      double first = 0;
+      double second = 0;
+      for (int i = 0; i < kRange.count(); ++i) {
+        const double d = kRange.min + i;
+        const double p = energies.has_partner(x, i) ? std::exp(-energies.at(x, y, i)) : 0;
+        total += p;
+        first += p * d;
+        second += p * d * d;
       }
+      const double mean = first / total;
+      const double variance = second / total - mean * mean;
+      wrong += std::abs(moments.mean_px().at(x, y) - mean) <= tolerance &&
+                       std::abs(moments.variance_px2().at(x, y) - variance) <=
+                           10 * tolerance * std::max(1.0, variance)
+                   ? 0
+                   : 1;
     }
-    EXPECT_LE(wrong, test::is_stepped(method) ? kWidth * kHeight / 50 : 0);
+    EXPECT_LE(wrong, is_stepped(method) ? kWidth * kHeight / 50 : 0);
   }
   EXPECT_EQ(methods, static_cast<int>(kMethods.size()));
 }
 
-}  // namespace posterior_moments_test
-}  // namespace vantage
+}  // namespace vantage::posterior_moments_test

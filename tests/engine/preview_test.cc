@@ -1,15 +1,8 @@
 #include "engine/io/images/preview.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "engine/error.h"
-
-namespace vantage {
-namespace preview_test {
+namespace vantage::preview_test {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -76,10 +69,8 @@ TEST(Preview, RefusesRangesWithoutExtent) {
 
 TEST(Preview, RangeIgnoresAFewWildPixels) {
   DisparityMap map(101, 10);
-  for (int y = 0; y < 10; ++y) {
-    for (int x = 0; x < 101; ++x) {
-      map.at(x, y) = static_cast<float>(x);
-    }
+  for (const auto [x, y] : positions_of(101, 10)) {
+    map.at(x, y) = static_cast<float>(x);
   }
   map.at(50, 3) = 1e9F;
   map.at(51, 3) = -1e9F;
@@ -97,5 +88,4 @@ TEST(Preview, RangeOfFlatAndUnknownMapsIsUsable) {
   EXPECT_LT(unknown.min_px, unknown.max_px);
 }
 
-}  // namespace preview_test
-}  // namespace vantage
+}  // namespace vantage::preview_test

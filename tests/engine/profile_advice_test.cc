@@ -1,19 +1,8 @@
 #include "engine/profiling/profile_advice.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
-
-namespace vantage {
-namespace profile_advice_test {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::profile_advice_test {
 
 Profile on_threads(const std::vector<std::pair<int, double>>& wall_s, int hardware_threads) {
   Profile profile;
@@ -81,5 +70,4 @@ TEST(ProfileAdvice, ThreadsThatGainNothingAreNamed) {
   EXPECT_THAT(profile_advice(on_threads({{1, 2}, {2, 1}}, 2), {}, choices), IsEmpty());
 }
 
-}  // namespace profile_advice_test
-}  // namespace vantage
+}  // namespace vantage::profile_advice_test

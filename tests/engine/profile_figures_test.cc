@@ -2,15 +2,11 @@
 
 #include "engine/profiling/profile_figures.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <vector>
+#include "tests/engine/engine_test.h"
 
 #include "engine/profiling/stage_figures.h"
 
-namespace vantage {
-namespace profile_figures_test {
+namespace vantage::profile_figures_test {
 
 TEST(SampleOf, IsMedianLeastAndMost) {
   const ProfileSample odd = sample_of({3, 9, 1});
@@ -107,5 +103,4 @@ TEST(StageFigures, AreWhatTheCountsComeTo) {
   EXPECT_EQ(halo_share(stage), 0.25);
 }
 
-}  // namespace profile_figures_test
-}  // namespace vantage
+}  // namespace vantage::profile_figures_test

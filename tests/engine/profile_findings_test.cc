@@ -1,20 +1,10 @@
 #include "engine/profiling/profile_findings.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
+#include "tests/engine/engine_test.h"
 #include "tests/engine/made_up_profiles.h"
 
-namespace vantage {
-namespace profile_findings_test {
+namespace vantage::profile_findings_test {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 using Kind = ProfileFinding::Kind;
 
 std::vector<Kind> kinds_of(const Profile& profile) {
@@ -161,5 +151,4 @@ TEST(ProfileFindings, ComeInTheirOrder) {
               ElementsAre(Kind::kStage, Kind::kWaiting, Kind::kImbalance, Kind::kScaling));
 }
 
-}  // namespace profile_findings_test
-}  // namespace vantage
+}  // namespace vantage::profile_findings_test

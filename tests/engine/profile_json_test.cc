@@ -2,15 +2,12 @@
 
 #include "engine/profiling/profile_json.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tests/engine/engine_test.h"
 #include "tests/engine/made_up_profiles.h"
 
-namespace vantage {
-namespace profile_json_test {
+namespace vantage::profile_json_test {
 
 using nlohmann::json;
 
@@ -89,5 +86,4 @@ TEST(ProfileJson, UnknownFiguresAreNull) {
   EXPECT_EQ(json_of({}).at("findings"), json::array());
 }
 
-}  // namespace profile_json_test
-}  // namespace vantage
+}  // namespace vantage::profile_json_test

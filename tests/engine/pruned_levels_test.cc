@@ -1,40 +1,27 @@
 // Levels on which few candidates are looked at, against levels that look at all, and what whole
 // pruned runs must not depend on.
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <random>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/matching/aggregation/edge_weights.h"
 #include "engine/matching/aggregation/stage_max_product.h"
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/stage_block_source.h"
 #include "engine/matching/levels/stage_fixed_energies.h"
+#include "engine/matching/options/method_rules.h"
 #include "engine/matching/selection/stage_coarser_selection.h"
 #include "engine/matching/selection/stage_fixed_energy_selection.h"
 #include "engine/matching/stereo_matcher.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
 #include "tests/engine/cell_stages.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace pruned_levels_test {
+namespace vantage::pruned_levels_test {
 
 using kernels::CandidateGeometry;
 using kernels::FixedEnergy;
 using scheduler::Extent;
-using test::CellSource;
-using test::identical;
-using Energies = test::CellVolume<FixedEnergy>;
+using Energies = CellVolume<FixedEnergy>;
 
 constexpr Extent kExtent{41, 19};
 
@@ -62,32 +49,25 @@ struct Level {
     }
     const int block_count = geometry.lanes() / kernels::kLaneMultiple;
     Image<std::int32_t> winners(coarse.columns, coarse.rows);
-    for (int y = 0; y < coarse.rows; ++y) {
-      for (int x = 0; x < coarse.columns; ++x) {
-        const int block =
-            everywhere ? x + 2 * y : x / 8 + y / 4 + static_cast<int>(random() % 5) / 2;
-        winners.at(x, y) =
-            std::min(block % block_count * kernels::kLaneMultiple + 8, candidates - 1);
-      }
+    for (const auto [x, y] : positions_of(coarse.columns, coarse.rows)) {
+      const int block = everywhere ? x + 2 * y : x / 8 + y / 4 + static_cast<int>(random() % 5) / 2;
+      winners.at(x, y) = std::min(block % block_count * kernels::kLaneMultiple + 8, candidates - 1);
     }
-    Execution execution({.threads = 1});
     blocks.resize(kExtent, candidates, max);
-    blocks.choose(winners.view(), std::nullopt, execution);
+    blocks.choose(winners.view(), std::nullopt, execution());
   }
 
   /// Takes what the coarser level says of candidates that are not looked at for impossible; one
   /// that is looked at was its winner.
   void mask_coarser() {
-    for (int y = 0; y < coarser.extent().rows; ++y) {
-      for (int x = 0; x < coarser.extent().columns; ++x) {
-        const BlockList list = blocks.at(2 * x, 2 * y);
-        for (int lane = 0; lane < geometry.lanes(); ++lane) {
-          if (std::ranges::find(list, lane / 16) == list.end()) {
-            coarser.column<std::uint8_t>(x, y)[lane] = kernels::kMaxCompact;
-          }
+    for (const auto [x, y] : positions_of(coarser.extent().columns, coarser.extent().rows)) {
+      const BlockList list = blocks.at(2 * x, 2 * y);
+      for (int lane = 0; lane < geometry.lanes(); ++lane) {
+        if (std::ranges::find(list, lane / 16) == list.end()) {
+          coarser.column<std::uint8_t>(x, y)[lane] = kernels::kMaxCompact;
         }
-        coarser.column<std::uint8_t>(x, y)[candidate_of(list, 1)] = 0;
       }
+      coarser.column<std::uint8_t>(x, y)[candidate_of(list, 1)] = 0;
     }
   }
 };
@@ -112,9 +92,8 @@ EdgeWeights random_edges(const MethodParameters& parameters) {
     std::generate_n(grey.row(y), kExtent.columns,
                     [&] { return static_cast<float>(random() % 30); });
   }
-  Execution execution({.threads = 1});
   EdgeWeights edges;
-  edges.prepare(grey.view(), parameters, execution);
+  edges.prepare(grey.view(), parameters, execution());
   return edges;
 }
 
@@ -206,7 +185,7 @@ Energies cells_of(const Level& level, const MethodParameters& parameters, bool p
   scheduler::run_whole_image(chain);
   if (every_way) {
     const Energies expected = result;
-    test::run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
+    run_in_strips(chain, [&] { ASSERT_EQ(result.cells, expected.cells); });
   }
   return result;
 }
@@ -223,15 +202,13 @@ TEST(PrunedLevel, EqualsALevelWhereTheOthersAreImpossible) {
       for (const EdgeWeights* const weights : {kNoEdges, &edges}) {
         const auto pruned = cells_of(level, parameters, true, weights);
         const auto masked = cells_of(level, parameters, false, weights);
-        for (int y = 0; y < kExtent.rows; ++y) {
-          for (int x = 0; x < kExtent.columns; ++x) {
-            const BlockList list = level.blocks.at(x, y);
-            for (int lane = 0; lane < level.blocks.count(list); ++lane) {
-              const int candidate = candidate_of(list, lane);
-              ASSERT_EQ(pruned.at(x, y, candidate), masked.at(x, y, candidate))
-                  << candidates << " candidates, mu " << mu << ", " << candidate << " of " << x
-                  << ", " << y;
-            }
+        for (const auto [x, y] : positions_of(kExtent.columns, kExtent.rows)) {
+          const BlockList list = level.blocks.at(x, y);
+          for (int lane = 0; lane < level.blocks.count(list); ++lane) {
+            const int candidate = candidate_of(list, lane);
+            ASSERT_EQ(pruned.at(x, y, candidate), masked.at(x, y, candidate))
+                << candidates << " candidates, mu " << mu << ", " << candidate << " of " << x
+                << ", " << y;
           }
         }
       }
@@ -308,7 +285,7 @@ void select_from_coarser(const Level& level, CandidateGeometry geometry,
   scheduler::run_whole_image(chain);
   if (expected != nullptr) {
     EXPECT_TRUE(map.equals(*expected));
-    test::run_in_strips(chain, [&] { ASSERT_TRUE(map.equals(*expected)); });
+    run_in_strips(chain, [&] { ASSERT_TRUE(map.equals(*expected)); });
   }
 }
 
@@ -346,56 +323,22 @@ MatchOptions pruned_options(DisparityRange range, int blocks) {
   return options;
 }
 
-DisparityMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options,
-                      const ExecutionOptions& how = {.threads = 2}, MatchReport* report = nullptr) {
-  Execution execution(how);
-  DisparityMaps maps;
-  StereoMatcher(options, execution)
-      .match(pair.left, pair.right, {.confidence = true}, maps, report);
-  return maps;
-}
-
 TEST(PrunedMatching, SixteenCandidatesIsFullMatching) {
   for (const Extent extent : {Extent{1, 1}, Extent{1, 7}, Extent{13, 11}, Extent{70, 37}}) {
     const DisparityRange range{0, std::min(15, extent.columns - 1)};
-    const auto pair =
-        test::textured_pair(extent.columns, extent.rows, range, test::PixelKind::kGrey8, 3);
+    const auto pair = textured_pair(extent.columns, extent.rows, range, PixelKind::kGrey8, 3);
     EXPECT_TRUE(identical(maps_of(pair, pruned_options(range, 1)),
                           maps_of(pair, pruned_options(range, 0))));
   }
 }
 
-TEST(PrunedMatching, ManyCandidatesDoesNotDependOnExecution) {
-  const DisparityRange range{-3, 60};
-  const auto pair = test::textured_pair(83, 37, range, test::PixelKind::kGrey8, 3);
-  const MatchOptions options = pruned_options(range, 2);
-  const DisparityMaps expected =
-      maps_of(pair, options, {.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-  constexpr int kStrips[] = {5, 16, 1000};
-  constexpr scheduler::ExecutorKind kExecutors[] = {scheduler::ExecutorKind::kTbb,
-                                                    scheduler::ExecutorKind::kOpenMp};
-  for (const test::SampleRow& row : test::sampled_rows({2, 2, 3, 2, 2})) {
-    EXPECT_TRUE(identical(expected, maps_of(pair, options,
-                                            {.threads = 2 + row[0],
-                                             .executor = kExecutors[row[1]],
-                                             .strip_width_px = kStrips[row[2]],
-                                             .band_height_px = row[3] == 0 ? 3 : 1000,
-                                             .iterations_per_pass = 1 + row[4]})))
-        << "threads, executor, strip, band, pass: " << ::testing::PrintToString(row) << ", "
-        << test::sample_name();
-  }
-}
-
 TEST(PrunedMatching, WiderRangesThanImagesHasADisparityEverywhere) {
   for (const Extent extent : {Extent{1, 1}, Extent{5, 3}, Extent{33, 17}}) {
-    const auto pair =
-        test::textured_pair(extent.columns, extent.rows, {0, 3}, test::PixelKind::kGrey8, 3);
+    const auto pair = textured_pair(extent.columns, extent.rows, {0, 3}, PixelKind::kGrey8, 3);
     const DisparityMaps maps = maps_of(pair, pruned_options({-90, 120}, 1));
-    for (int y = 0; y < extent.rows; ++y) {
-      for (int x = 0; x < extent.columns; ++x) {
-        EXPECT_FALSE(std::isnan(maps.left.disparity_px.at(x, y)));
-        EXPECT_FALSE(std::isnan(maps.right.disparity_px.at(x, y)));
-      }
+    for (const auto [x, y] : positions_of(extent.columns, extent.rows)) {
+      EXPECT_FALSE(std::isnan(maps.left.disparity_px.at(x, y)));
+      EXPECT_FALSE(std::isnan(maps.right.disparity_px.at(x, y)));
     }
   }
 }
@@ -421,7 +364,7 @@ TEST(PrunedMatching, ThinObjectsStayFound) {
       left.at(x, y) = right.at(x - kBar, y) = grey();
     }
   }
-  const test::PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
+  const PhotographPair pair{Photograph{std::move(left)}, Photograph{std::move(right)}};
   MatchReport full_report;
   MatchReport pruned_report;
   MatchOptions options = pruned_options({0, 127}, 0);
@@ -429,11 +372,13 @@ TEST(PrunedMatching, ThinObjectsStayFound) {
   options.parameters.sigma_measurement = 5;
   options.parameters.epsilon_measurement = 1e-3;
   options.parameters.epsilon_prior = 0.01;
-  const DisparityMaps full = maps_of(pair, options, {.threads = 2}, &full_report);
+  const DisparityMaps full =
+      maps_of(pair, options, {.threads = 2}, {.confidence = true}, &full_report);
   // On level 2 the bar is less than a pixel wide: level 1 must look for itself.
   options.parameters.candidate_blocks = 2;
   options.parameters.pruned_levels = 1;
-  const DisparityMaps pruned = maps_of(pair, options, {.threads = 2}, &pruned_report);
+  const DisparityMaps pruned =
+      maps_of(pair, options, {.threads = 2}, {.confidence = true}, &pruned_report);
   int found = 0;
   int full_found = 0;
   int different = 0;
@@ -456,31 +401,25 @@ TEST(PrunedMatching, ThinObjectsStayFound) {
 }
 
 TEST(PrunedMatching, IsRefusedWhereItHasNoMeaning) {
-  const auto message = [](auto change) {
+  const auto message = [](const MethodOverrides& change) {
     MatchOptions options = pruned_options({0, 63}, 2);
-    change(options.parameters);
-    try {
-      validate(options.resolved());
-    } catch (const UsageError& error) {
-      return std::string(error.what());
-    }
-    return std::string();
+    options.parameters = merge(options.parameters, change);
+    return error_of([&] { validate(options.resolved()); });
   };
-  EXPECT_EQ(message([](MethodOverrides&) {}), "");
-  EXPECT_EQ(message([](MethodOverrides& p) { p.candidate_blocks = 9; }),
+  EXPECT_EQ(message({}), "");
+  EXPECT_EQ(message({.candidate_blocks = 9}),
             "candidate-blocks is 9, expected a number from 0 (all candidates) to 8");
-  EXPECT_EQ(message([](MethodOverrides& p) { p.pruned_levels = 0; }),
-            "pruned-levels is 0, expected a number from 1 to 10");
-  EXPECT_EQ(message([](MethodOverrides& p) { p.levels = 1; }),
+  EXPECT_EQ(message({.pruned_levels = 0}), "pruned-levels is 0, expected a number from 1 to 10");
+  EXPECT_EQ(message({.levels = 1}),
             "candidate-blocks is 2, expected 0 with a single level: candidates are chosen by the "
             "winners of a coarser level");
-  EXPECT_EQ(message([](MethodOverrides& p) { p.aggregation = Aggregation::kMembrane; }),
+  EXPECT_EQ(message({.aggregation = Aggregation::kMembrane}),
             "candidate-blocks is 2, expected 0 unless aggregation is bayes: for energies, "
             "candidates that were not searched have no value that is neutral to their neighbours");
-  EXPECT_EQ(message([](MethodOverrides& p) { p.cost = MatchCost::kGradient; }),
+  EXPECT_EQ(message({.cost = MatchCost::kGradient}),
             "candidate-blocks is 2, expected 0 with the cost gradient: its likelihoods compare a "
             "candidate with the best of all");
-  EXPECT_EQ(message([](MethodOverrides& p) { p.prior_smoothing = PriorSmoothing::kSum; }),
+  EXPECT_EQ(message({.prior_smoothing = PriorSmoothing::kSum}),
             "candidate-blocks is 2, expected 0 with prior-smoothing sum: pruning needs "
             "prior-smoothing maximum");
 }
@@ -494,5 +433,4 @@ TEST(PrunedMatching, OfAPresetIsDroppedWithSums) {
   options.validate();
 }
 
-}  // namespace pruned_levels_test
-}  // namespace vantage
+}  // namespace vantage::pruned_levels_test

@@ -1,11 +1,8 @@
 #include "engine/profiling/quantity_text.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <limits>
-
-namespace vantage {
-namespace quantity_text_test {
+namespace vantage::quantity_text_test {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -42,5 +39,4 @@ TEST(QuantityText, WhatIsNotFiniteIsADash) {
   EXPECT_EQ(sample_text({kNaN, 1, 2}, "s"), "–");
 }
 
-}  // namespace quantity_text_test
-}  // namespace vantage
+}  // namespace vantage::quantity_text_test

@@ -1,21 +1,9 @@
 #include "engine/quoted_text.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
-#include "engine/error.h"
 #include "engine/io/files/json_text.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace quoted_text_test {
-
-using test::error_of;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
+namespace vantage::quoted_text_test {
 
 TEST(QuotedText, PrintableKeepsTextAndEscapesWhatSteersATerminal) {
   EXPECT_EQ(printable("left 1.png, größe ∞ 😀"), "left 1.png, größe ∞ 😀");
@@ -78,5 +66,4 @@ TEST(JsonText, QuotesValuesShortened) {
   EXPECT_EQ(quoted_json("\xFF"), "'\\xFF'");
 }
 
-}  // namespace quoted_text_test
-}  // namespace vantage
+}  // namespace vantage::quoted_text_test

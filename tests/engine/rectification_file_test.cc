@@ -1,23 +1,17 @@
 #include "engine/rectification/rectification_file.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
-#include <random>
 
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace rectification_file_test {
-
-using test::error_of;
+namespace vantage::rectification_file_test {
 
 TEST(RectificationFile, OpenCvReadsIt) {
   std::mt19937 random(1);
-  const StereoCalibration rig = test::random_calibration(random, 320, 200, 5);
+  const StereoCalibration rig = random_calibration(random, 320, 200, 5);
   const RectifiedPair pair = rectified_pair(rig, 320, 200, {.kept_outline = 1});
   for (const char* name : {"a.yml", "a.yaml", "a.xml", "a.json"}) {
     const std::string text = rectification_text(name, rig, pair);
@@ -74,10 +68,10 @@ TEST(RectificationFile, ServesAsCalibration) {
   std::mt19937 random(2);
   const TemporaryFolder folder;
   for (const int coefficients : {0, 5, 8}) {
-    const StereoCalibration rig = test::random_calibration(random, 320, 200, coefficients);
+    const StereoCalibration rig = random_calibration(random, 320, 200, coefficients);
     for (const char* name : {"rig.yml", "rig.xml"}) {
       const std::string path = folder / name;
-      test::put_text(path, rectification_text(path, rig, rectified_pair(rig, 320, 200)));
+      put_text(path, rectification_text(path, rig, rectified_pair(rig, 320, 200)));
       const StereoCalibration read = read_stereo_calibration(path);
       EXPECT_TRUE(read.left.matrix.isApprox(rig.left.matrix, 1e-12)) << name;
       EXPECT_TRUE(read.rotation.isApprox(rig.rotation, 1e-12));
@@ -94,12 +88,11 @@ TEST(RectificationFile, ExtensionSaysTheFormat) {
   EXPECT_TRUE(is_rectification_extension("a/b.json"));
   EXPECT_FALSE(is_rectification_extension("a/b.txt"));
   std::mt19937 random(3);
-  const StereoCalibration rig = test::random_calibration(random, 320, 200, 0);
+  const StereoCalibration rig = random_calibration(random, 320, 200, 0);
   EXPECT_EQ(
       error_of([&] { (void)rectification_text("rig.txt", rig, rectified_pair(rig, 320, 200)); }),
       "'rig.txt' is not a file for matrices, expected a name that ends in .yml .yaml .xml or "
       ".json");
 }
 
-}  // namespace rectification_file_test
-}  // namespace vantage
+}  // namespace vantage::rectification_file_test

@@ -1,20 +1,11 @@
 #include "engine/rectification/rectified_pair.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <cmath>
-#include <random>
 
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace rectified_pair_test {
-
-using test::error_of;
-using test::plain_projection;
-using test::uniform;
+namespace vantage::rectified_pair_test {
 
 /// Where a rectified pixel lies in the photograph, step by step.
 Eigen::Vector2d plain_source(const RectifiedCamera& rectified, const Camera& camera, double x,
@@ -34,7 +25,7 @@ TEST(RectifiedPair, RowsCorrespondAndDisparityIsInverseDepth) {
   std::mt19937 random(1);
   for (int trial = 0; trial < 16; ++trial) {
     const int coefficients = trial % 2 == 0 ? 0 : 5;
-    const StereoCalibration rig = test::random_calibration(random, 640, 480, coefficients, 0.15);
+    const StereoCalibration rig = random_calibration(random, 640, 480, coefficients, 0.15);
     const RectifiedPair pair = rectified_pair(rig, 640, 480);
     EXPECT_EQ(pair.left.matrix, pair.right.matrix);
     EXPECT_EQ(pair.left.matrix(0, 0), pair.left.matrix(1, 1));
@@ -87,7 +78,7 @@ TEST(RectifiedPair, ByDefaultEveryPixelIsSeenAndTheWindowIsAsLargeAsCanBe) {
   std::mt19937 random(2);
   for (const auto& [width, height] : {std::pair{64, 48}, {31, 97}, {97, 31}}) {
     for (const int coefficients : {0, 5, 8, 14}) {
-      const StereoCalibration rig = test::random_calibration(random, width, height, coefficients);
+      const StereoCalibration rig = random_calibration(random, width, height, coefficients);
       const RectifiedPair pair = rectified_pair(rig, width, height);
       EXPECT_EQ(pair.valid.width, width);
       EXPECT_EQ(pair.valid.height, height);
@@ -115,7 +106,7 @@ TEST(RectifiedPair, MayKeepTheWholeOutline) {
   for (const int coefficients : {0, 5, 14}) {
     const int width = 96;
     const int height = 72;
-    const StereoCalibration rig = test::random_calibration(random, width, height, coefficients);
+    const StereoCalibration rig = random_calibration(random, width, height, coefficients);
     const RectifiedPair pair = rectified_pair(rig, width, height, {.kept_outline = 1});
     const RectifiedPair cropped = rectified_pair(rig, width, height);
     EXPECT_LT(pair.left.matrix(0, 0), cropped.left.matrix(0, 0));
@@ -139,10 +130,9 @@ TEST(RectifiedPair, MayKeepTheWholeOutline) {
         }
       }
       // The valid part shows nothing that lies outside.
-      for (int y = pair.valid.y; y < pair.valid.y + pair.valid.height; ++y) {
-        for (int x = pair.valid.x; x < pair.valid.x + pair.valid.width; ++x) {
-          ASSERT_TRUE(is_in_image(plain_source(*rectified, *source, x, y), width, height, 0.51));
-        }
+      for (const auto [x, y] : positions_of({pair.valid.x, pair.valid.x + pair.valid.width},
+                                            {pair.valid.y, pair.valid.y + pair.valid.height})) {
+        ASSERT_TRUE(is_in_image(plain_source(*rectified, *source, x, y), width, height, 0.51));
       }
     }
     const RectifiedPair between = rectified_pair(rig, width, height, {.kept_outline = 0.5});
@@ -188,12 +178,12 @@ TEST(RectifiedPair, RefusesCamerasThatCannotBeRectified) {
   EXPECT_EQ(error_with({0, -1, 0}, 0),
             "the baseline is turned 90.0 degrees from the cameras' x axes, limit 45: expected "
             "cameras side by side");
-  EXPECT_NE(error_with({-0.5, 0, -1}, 0).find("63.4 degrees"), std::string::npos);
+  EXPECT_THAT(error_with({-0.5, 0, -1}, 0), HasSubstr("63.4 degrees"));
   EXPECT_EQ(error_with({-1, 0, 0}, 100),
             "the cameras' viewing directions are 100.0 degrees apart, limit 90");
   // Each looks 30 degrees inwards and sees 33 to the side.
-  EXPECT_NE(error_with({-std::sqrt(0.75), 0, 0.5}, 60).find("common view"), std::string::npos);
-  EXPECT_NE(error_with({-1, 0, 0}, 0, 300).find("principal point"), std::string::npos);
+  EXPECT_THAT(error_with({-std::sqrt(0.75), 0, 0.5}, 60), HasSubstr("common view"));
+  EXPECT_THAT(error_with({-1, 0, 0}, 0, 300), HasSubstr("principal point"));
   // Distortion that folds back at once: the camera sees nothing.
   StereoCalibration folded = rig;
   folded.right.distortion = {-1e6, 0, 0, 0};
@@ -203,5 +193,4 @@ TEST(RectifiedPair, RefusesCamerasThatCannotBeRectified) {
             "kept-outline is 1.5, expected 0 to 1");
 }
 
-}  // namespace rectified_pair_test
-}  // namespace vantage
+}  // namespace vantage::rectified_pair_test

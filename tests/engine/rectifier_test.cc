@@ -1,33 +1,15 @@
 #include "engine/rectification/rectifier.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <random>
-#include <sstream>
 
 #include "engine/generation/layered_scene.h"
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
+#include "tests/engine/every_execution.h"
 #include "tests/keys_kernel.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace rectifier_test {
-
-using test::error_of;
-using test::keys;
-using test::noise;
-using test::plain_projection;
-using test::same;
-
-Execution& execution() {
-  static Execution instance({.threads = 2});
-  return instance;
-}
+namespace vantage::rectifier_test {
 
 /// Bicubic interpolation in double; 0 outside of the image.
 template <typename T>
@@ -54,7 +36,6 @@ const Camera& source_camera(const StereoCalibration& rig, Side side) {
 
 template <typename T>
 class RectifiedImages : public testing::Test {};
-using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(RectifiedImages, PixelTypes);
 
 TYPED_TEST(RectifiedImages, AreThePhotographSeenThroughTheModel) {
@@ -65,8 +46,7 @@ TYPED_TEST(RectifiedImages, AreThePhotographSeenThroughTheModel) {
        {std::tuple{1, 1, 1e-5}, {1, 7, 1e-5}, {9, 1, 1e-5}, {13, 11, 0.01}, {43, 29, 0.05}}) {
     for (const int channels : {1, 3, 4}) {
       const int coefficients = channels == 1 ? 14 : channels == 3 ? 5 : 8;
-      StereoCalibration rig =
-          test::random_calibration(random, width, height, coefficients, radians);
+      StereoCalibration rig = random_calibration(random, width, height, coefficients, radians);
       rig.translation.tail<2>() *= radians;
       for (Camera* camera : {&rig.left, &rig.right}) {
         camera->matrix(0, 2) = 0.49 * (width - 1);
@@ -85,31 +65,29 @@ TYPED_TEST(RectifiedImages, AreThePhotographSeenThroughTheModel) {
         const auto& from = std::get<Image<T>>(source.pixels);
         const auto& to = std::get<Image<T>>(result.pixels);
         const RectifiedCamera& camera = rectifier.pair().camera(side);
-        for (int y = 0; y < height; ++y) {
-          for (int x = 0; x < width; ++x) {
-            const Eigen::Vector3d ray =
-                (camera.matrix * camera.rotation).inverse() * Eigen::Vector3d(x, y, 1);
-            const Eigen::Vector2d position =
-                plain_projection(source_camera(rig, side), ray.x() / ray.z(), ray.y() / ray.z());
-            const auto said = rectifier.source_position(side, {x, y});
-            ASSERT_TRUE(said);
-            ASSERT_LT((*said - position).norm(), 1e-8);
-            // On the very edge rounding decides.
-            const auto from_edge = [](double at, int size) {
-              return std::min(std::abs(at + 0.5), std::abs(at - (size - 0.5)));
-            };
-            if (std::min(from_edge(position.x(), width), from_edge(position.y(), height)) < 1e-4) {
-              continue;
-            }
-            black += sample(from, position, 0) == 0 ? 1 : 0;
-            for (int c = 0; c < channels; ++c) {
-              constexpr bool kIsFloat = std::is_same_v<T, float>;
-              const double largest = kIsFloat ? 1 : std::numeric_limits<T>::max();
-              const double value = sample(from, position, c);
-              ASSERT_NEAR(to.at(x, y, c), std::clamp(value, 0.0, largest),
-                          kIsFloat ? 1e-4 : 0.5 + largest * 1e-4)
-                  << width << "x" << height << "x" << channels << " at " << x << ", " << y;
-            }
+        for (const auto [x, y] : positions_of(width, height)) {
+          const Eigen::Vector3d ray =
+              (camera.matrix * camera.rotation).inverse() * Eigen::Vector3d(x, y, 1);
+          const Eigen::Vector2d position =
+              plain_projection(source_camera(rig, side), ray.x() / ray.z(), ray.y() / ray.z());
+          const auto said = rectifier.source_position(side, {x, y});
+          ASSERT_TRUE(said);
+          ASSERT_LT((*said - position).norm(), 1e-8);
+          // On the very edge rounding decides.
+          const auto from_edge = [](double at, int size) {
+            return std::min(std::abs(at + 0.5), std::abs(at - (size - 0.5)));
+          };
+          if (std::min(from_edge(position.x(), width), from_edge(position.y(), height)) < 1e-4) {
+            continue;
+          }
+          black += sample(from, position, 0) == 0 ? 1 : 0;
+          for (int c = 0; c < channels; ++c) {
+            constexpr bool kIsFloat = std::is_same_v<T, float>;
+            const double largest = kIsFloat ? 1 : std::numeric_limits<T>::max();
+            const double value = sample(from, position, c);
+            ASSERT_NEAR(to.at(x, y, c), std::clamp(value, 0.0, largest),
+                        kIsFloat ? 1e-4 : 0.5 + largest * 1e-4)
+                << width << "x" << height << "x" << channels << " at " << x << ", " << y;
           }
         }
       }
@@ -120,24 +98,18 @@ TYPED_TEST(RectifiedImages, AreThePhotographSeenThroughTheModel) {
 
 TEST(Rectifier, SameBitsForEveryExecutor) {
   std::mt19937 random(2);
-  const Rectifier rectifier(test::random_calibration(random, 131, 77, 5), 131, 77);
+  const Rectifier rectifier(random_calibration(random, 131, 77, 5), 131, 77);
   const Photograph source = noise<std::uint8_t>(131, 77, 3);
-  Photograph expected;
-  Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-  rectifier.apply(source, Side::kRight, expected, serial);
-  for (const auto kind : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
-    for (const int threads : {1, 2, 3}) {
-      Execution other({.threads = threads, .executor = kind});
-      Photograph result;
-      rectifier.apply(source, Side::kRight, result, other);
-      EXPECT_TRUE(same(result, expected)) << threads << " threads";
-    }
-  }
+  expect_equal_for_every_execution([&](Execution& execution) {
+    Photograph result;
+    rectifier.apply(source, Side::kRight, result, execution);
+    return values_of(result);
+  });
 }
 
 TEST(Rectifier, KeepsTheMemoryOfItsResult) {
   std::mt19937 random(3);
-  const Rectifier rectifier(test::random_calibration(random, 64, 48, 5), 64, 48);
+  const Rectifier rectifier(random_calibration(random, 64, 48, 5), 64, 48);
   Photograph result = noise<float>(10, 10, 1);
   rectifier.apply(noise<std::uint8_t>(64, 48, 3), Side::kLeft, result, execution());
   const auto* memory = std::get<Image<std::uint8_t>>(result.pixels).row(0);
@@ -147,39 +119,35 @@ TEST(Rectifier, KeepsTheMemoryOfItsResult) {
 
 TEST(Rectifier, AlphaIsOpaqueInsideAndNothingOutside) {
   std::mt19937 random(4);
-  StereoCalibration rig = test::random_calibration(random, 120, 90, 5);
+  StereoCalibration rig = random_calibration(random, 120, 90, 5);
   const Rectifier rectifier(rig, 120, 90, {.kept_outline = 1});
   Photograph source = noise<std::uint8_t>(120, 90, 4);
   auto& pixels = std::get<Image<std::uint8_t>>(source.pixels);
-  for (int y = 0; y < 90; ++y) {
-    for (int x = 0; x < 120; ++x) {
-      pixels.at(x, y, 3) = 255;
-    }
+  for (const auto [x, y] : positions_of(120, 90)) {
+    pixels.at(x, y, 3) = 255;
   }
   Photograph result;
   rectifier.apply(source, Side::kLeft, result, execution());
   const auto& image = std::get<Image<std::uint8_t>>(result.pixels);
   const PixelRectangle& valid = rectifier.pair().valid;
   int outside = 0;
-  for (int y = 0; y < 90; ++y) {
-    for (int x = 0; x < 120; ++x) {
-      const std::uint8_t* pixel = image.row(y) + 4 * x;
-      ASSERT_TRUE(pixel[3] == 255 || (pixel[0] | pixel[1] | pixel[2] | pixel[3]) == 0);
-      const bool is_valid =
-          x >= valid.x && x < valid.x + valid.width && y >= valid.y && y < valid.y + valid.height;
-      ASSERT_TRUE(!is_valid || pixel[3] == 255) << x << ", " << y;
-      outside += pixel[3] == 0 ? 1 : 0;
-    }
+  for (const auto [x, y] : positions_of(120, 90)) {
+    const std::uint8_t* pixel = image.row(y) + 4 * x;
+    ASSERT_TRUE(pixel[3] == 255 || (pixel[0] | pixel[1] | pixel[2] | pixel[3]) == 0);
+    const bool is_valid =
+        x >= valid.x && x < valid.x + valid.width && y >= valid.y && y < valid.y + valid.height;
+    ASSERT_TRUE(!is_valid || pixel[3] == 255) << x << ", " << y;
+    outside += pixel[3] == 0 ? 1 : 0;
   }
   EXPECT_GT(outside, 10);
 }
 
 TEST(Rectifier, PositionsGoThereAndBack) {
   std::mt19937 random(5);
-  const Rectifier rectifier(test::random_calibration(random, 640, 480, 8), 640, 480);
+  const Rectifier rectifier(random_calibration(random, 640, 480, 8), 640, 480);
   for (const Side side : {Side::kLeft, Side::kRight}) {
     for (int i = 0; i < 200; ++i) {
-      const Eigen::Vector2d rectified(test::uniform(random, 0, 639), test::uniform(random, 0, 479));
+      const Eigen::Vector2d rectified(uniform(random, 0, 639), uniform(random, 0, 479));
       const auto source = rectifier.source_position(side, rectified);
       ASSERT_TRUE(source);
       const auto again = rectifier.rectified_position(side, *source);
@@ -212,13 +180,11 @@ Eigen::Vector2d shift_px(const Image<std::uint8_t>& image, const Image<float>& e
                          int y0, int size) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  for (int y = y0; y < y0 + size; ++y) {
-    for (int x = x0; x < x0 + size; ++x) {
-      const Eigen::Vector2d gradient((expected.at(x + 1, y) - expected.at(x - 1, y)) / 2,
-                                     (expected.at(x, y + 1) - expected.at(x, y - 1)) / 2);
-      normal += gradient * gradient.transpose();
-      right -= gradient * (static_cast<double>(image.at(x, y, 1)) - expected.at(x, y));
-    }
+  for (const auto [x, y] : positions_of({x0, x0 + size}, {y0, y0 + size})) {
+    const Eigen::Vector2d gradient((expected.at(x + 1, y) - expected.at(x - 1, y)) / 2,
+                                   (expected.at(x, y + 1) - expected.at(x, y - 1)) / 2);
+    normal += gradient * gradient.transpose();
+    right -= gradient * (static_cast<double>(image.at(x, y, 1)) - expected.at(x, y));
   }
   return normal.inverse() * right;
 }
@@ -259,15 +225,13 @@ TEST(Rectifier, BringsBackRowsOfADistortedScene) {
     };
     const LensModel lens(source_camera(rig, side));
     Image<std::uint8_t> photograph(width, height, 3);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const auto ray = lens.ray_of({x, y});
-        ASSERT_TRUE(ray);
-        const Eigen::Vector2d at = in_rendering(turned[index].transpose() * ray->homogeneous());
-        for (int c = 0; c < 3; ++c) {
-          photograph.at(x, y, c) =
-              static_cast<std::uint8_t>(std::lround(std::clamp(sample(seen, at, c), 0.0, 255.0)));
-        }
+    for (const auto [x, y] : positions_of(width, height)) {
+      const auto ray = lens.ray_of({x, y});
+      ASSERT_TRUE(ray);
+      const Eigen::Vector2d at = in_rendering(turned[index].transpose() * ray->homogeneous());
+      for (int c = 0; c < 3; ++c) {
+        photograph.at(x, y, c) =
+            static_cast<std::uint8_t>(std::lround(std::clamp(sample(seen, at, c), 0.0, 255.0)));
       }
     }
     Photograph result;
@@ -276,11 +240,9 @@ TEST(Rectifier, BringsBackRowsOfADistortedScene) {
     const Eigen::Matrix3d to_scene = (rectifier.pair().left.rotation * turned[0]).transpose() *
                                      rectifier.pair().camera(side).matrix.inverse();
     Image<float> expected(width, height);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const Eigen::Vector3d ray = to_scene * Eigen::Vector3d(x, y, 1);
-        expected.at(x, y) = static_cast<float>(sample(seen, in_rendering(ray), 1));
-      }
+    for (const auto [x, y] : positions_of(width, height)) {
+      const Eigen::Vector3d ray = to_scene * Eigen::Vector3d(x, y, 1);
+      expected.at(x, y) = static_cast<float>(sample(seen, in_rendering(ray), 1));
     }
     const int size = 36;
     for (int y = 1; y + size < height; y += size) {
@@ -328,5 +290,4 @@ TEST(Rectifier, ChessboardCornersMeetInOneRow) {
   EXPECT_GT(std::sqrt(raw_sum_squares / corners), 5);
 }
 
-}  // namespace rectifier_test
-}  // namespace vantage
+}  // namespace vantage::rectifier_test

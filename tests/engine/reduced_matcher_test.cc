@@ -1,20 +1,9 @@
 #include "engine/matching/search/reduced/reduction.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <string>
-#include <utility>
-
-#include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace reduced_matcher_test {
+namespace vantage::reduced_matcher_test {
 
 struct PhotographPair {
   Photograph left;
@@ -38,13 +27,11 @@ PhotographPair shifted_pair(int width, int height, int shift_px, int near_px, in
   const auto is_near = [&](int x, int y) {
     return x > width / 3 && x < 2 * width / 3 && y > height / 3 && y < 2 * height / 3;
   };
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < channels; ++c) {
-        left.at(x, y, c) = static_cast<std::uint8_t>(noise.at(x + 200, y));
-        const int from = is_near(x + shift_px + near_px, y) ? x + shift_px + near_px : x + shift_px;
-        right.at(x, y, c) = static_cast<std::uint8_t>(noise.at(from + 200, y));
-      }
+  for (const auto [x, y] : positions_of(width, height)) {
+    for (int c = 0; c < channels; ++c) {
+      left.at(x, y, c) = static_cast<std::uint8_t>(noise.at(x + 200, y));
+      const int from = is_near(x + shift_px + near_px, y) ? x + shift_px + near_px : x + shift_px;
+      right.at(x, y, c) = static_cast<std::uint8_t>(noise.at(from + 200, y));
     }
   }
   return {{std::move(left)}, {std::move(right)}};
@@ -63,31 +50,28 @@ double share_right(const DisparityMap& map, int shift_px, int near_px) {
   int all = 0;
   const int w = map.width();
   const int h = map.height();
-  for (int y = 8; y < h - 8; ++y) {
-    for (int x = shift_px + near_px + 8; x < w - 8; ++x) {
-      const bool is_near = x > w / 3 + 8 && x < 2 * w / 3 - 8 && y > h / 3 + 8 && y < 2 * h / 3 - 8;
-      const bool is_far =
-          x < w / 3 - 8 - near_px || x > 2 * w / 3 + 8 || y < h / 3 - 8 || y > 2 * h / 3 + 8;
-      if (is_near || is_far) {
-        ++all;
-        right += std::abs(map.at(x, y) - static_cast<float>(shift_px + (is_near ? near_px : 0))) < 1
-                     ? 1
-                     : 0;
-      }
+  for (const auto [x, y] : positions_of({shift_px + near_px + 8, w - 8}, {8, h - 8})) {
+    const bool is_near = x > w / 3 + 8 && x < 2 * w / 3 - 8 && y > h / 3 + 8 && y < 2 * h / 3 - 8;
+    const bool is_far =
+        x < w / 3 - 8 - near_px || x > 2 * w / 3 + 8 || y < h / 3 - 8 || y > 2 * h / 3 + 8;
+    if (is_near || is_far) {
+      ++all;
+      right += std::abs(map.at(x, y) - static_cast<float>(shift_px + (is_near ? near_px : 0))) < 1
+                   ? 1
+                   : 0;
     }
   }
   return static_cast<double>(right) / all;
 }
 
 TEST(ReducedMatcher, FindsTwoSurfacesAtEverySearchSize) {
-  Execution execution({.threads = 2});
   const PhotographPair pair = shifted_pair(241, 163, 11, 9, 3);
   for (const SearchSize size :
        {SearchSize::kFull, SearchSize::kHalf, SearchSize::kQuarter, SearchSize::kAuto}) {
     MatchOptions options = realtime({0, 40});
     options.parameters.search_size = size;
     DisparityMaps maps;
-    StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps);
+    StereoMatcher(options, execution()).match(pair.left, pair.right, {}, maps);
     EXPECT_GT(share_right(maps.left.disparity_px, 11, 9), 0.98) << static_cast<int>(size);
     EXPECT_EQ(maps.right.disparity_px.width(), 241);
     EXPECT_EQ(maps.right.unmatched.height(), 163);
@@ -102,11 +86,9 @@ TEST(ReducedMatcher, MapsAreTheSameForAnyExecutionAndRequest) {
     Execution one({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
     DisparityMaps expected;
     StereoMatcher(options, one).match(pair.left, pair.right, {.confidence = true}, expected);
-    for (int y = 0; y < 99; ++y) {
-      for (int x = 0; x < 131; ++x) {
-        const float confidence = expected.left.confidence.at(x, y);
-        ASSERT_TRUE(std::isnan(confidence) || (confidence > 0 && confidence <= 1));
-      }
+    for (const auto [x, y] : positions_of(131, 99)) {
+      const float confidence = expected.left.confidence.at(x, y);
+      ASSERT_TRUE(std::isnan(confidence) || (confidence > 0 && confidence <= 1));
     }
     for (const ExecutionOptions& how :
          {ExecutionOptions{.threads = 3},
@@ -117,16 +99,16 @@ TEST(ReducedMatcher, MapsAreTheSameForAnyExecutionAndRequest) {
       DisparityMaps maps;
       for (int again = 0; again < 2; ++again) {
         matcher.match(pair.left, pair.right, {.confidence = true}, maps);
-        EXPECT_TRUE(test::identical(maps, expected));
-        EXPECT_TRUE(test::identical(maps.left.unmatched, expected.left.unmatched));
+        EXPECT_TRUE(identical(maps, expected));
+        EXPECT_TRUE(identical(maps.left.unmatched, expected.left.unmatched));
       }
       DisparityMaps left;
       matcher.match(pair.left, pair.right, {.right = false}, left);
-      EXPECT_TRUE(test::identical(left.left.disparity_px, expected.left.disparity_px));
+      EXPECT_TRUE(identical(left.left.disparity_px, expected.left.disparity_px));
       EXPECT_TRUE(left.right.disparity_px.empty());
       DisparityMaps right;
       matcher.match(pair.left, pair.right, {.left = false}, right);
-      EXPECT_TRUE(test::identical(right.right.disparity_px, expected.right.disparity_px));
+      EXPECT_TRUE(identical(right.right.disparity_px, expected.right.disparity_px));
     }
   }
 }
@@ -145,7 +127,6 @@ TEST(ReducedMatcher, ReductionsDependOnCandidatesAndSize) {
 }
 
 TEST(ReducedMatcher, SmallImagesAndFewCandidatesWork) {
-  Execution execution({.threads = 2});
   for (const auto& [width, height] : {std::pair{1, 1}, {33, 32}, {64, 33}, {35, 70}}) {
     const PhotographPair pair = shifted_pair(width, height, 2, 0);
     for (const DisparityRange range : {DisparityRange{0, 0}, {-3, 1}, {-40, 300}}) {
@@ -153,15 +134,12 @@ TEST(ReducedMatcher, SmallImagesAndFewCandidatesWork) {
         MatchOptions options = realtime(range);
         options.parameters.search_size = size;
         DisparityMaps maps;
-        StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps);
+        StereoMatcher(options, execution()).match(pair.left, pair.right, {}, maps);
         ASSERT_EQ(maps.left.disparity_px.width(), width);
-        for (int y = 0; y < height; ++y) {
-          for (int x = 0; x < width; ++x) {
-            const float disparity_px = maps.left.disparity_px.at(x, y);
-            ASSERT_TRUE(std::isnan(disparity_px) ||
-                        (disparity_px >= static_cast<float>(range.min) &&
-                         disparity_px <= static_cast<float>(range.max)));
-          }
+        for (const auto [x, y] : positions_of(width, height)) {
+          const float disparity_px = maps.left.disparity_px.at(x, y);
+          ASSERT_TRUE(std::isnan(disparity_px) || (disparity_px >= static_cast<float>(range.min) &&
+                                                   disparity_px <= static_cast<float>(range.max)));
         }
       }
     }
@@ -169,26 +147,24 @@ TEST(ReducedMatcher, SmallImagesAndFewCandidatesWork) {
 }
 
 TEST(ReducedMatcher, RawMapsAreWinnersEnlarged) {
-  Execution execution({.threads = 1});
   const PhotographPair pair = shifted_pair(120, 90, 10, 0);
   MatchOptions options = realtime({0, 31});
   options.raw = true;
   DisparityMaps maps;
-  StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps);
+  StereoMatcher(options, execution()).match(pair.left, pair.right, {}, maps);
   EXPECT_GT(share_right(maps.left.disparity_px, 10, 0), 0.98);
 }
 
 TEST(ReducedMatcher, RefusesPriorsAndRangesOutsideTheImage) {
-  Execution execution({.threads = 1});
   const PhotographPair pair = shifted_pair(64, 64, 2, 0);
   DisparityMaps maps;
-  const StereoMatcher matcher(realtime({0, 31}), execution);
+  const StereoMatcher matcher(realtime({0, 31}), execution());
   const DisparityMap prior(64, 64);
   EXPECT_THROW(matcher.match(pair.left, pair.right, {.prior = {.left_px = prior.view()}}, maps),
                UsageError);
   EXPECT_THROW(
-      StereoMatcher(realtime({100, 131}), execution).match(pair.left, pair.right, {}, maps), Error);
+      StereoMatcher(realtime({100, 131}), execution()).match(pair.left, pair.right, {}, maps),
+      Error);
 }
 
-}  // namespace reduced_matcher_test
-}  // namespace vantage
+}  // namespace vantage::reduced_matcher_test

@@ -1,24 +1,9 @@
 #include "engine/refinement/refinement.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <random>
-#include <string>
-#include <vector>
-
 #include "engine/refinement/refine_maps.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace refinement_test {
-
-using test::identical;
-using ::testing::ElementsAre;
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+namespace vantage::refinement_test {
 
 DisparityMap map_of(const std::vector<std::vector<float>>& rows) {
   DisparityMap map(static_cast<int>(rows.front().size()), static_cast<int>(rows.size()));
@@ -42,13 +27,12 @@ using Rows = std::vector<std::vector<float>>;
 using MaskRows = std::vector<std::vector<std::uint8_t>>;
 
 TEST(MarkUnsure, MarksWhatIsNotAboveTheThresholdBesideWhatIsMarked) {
-  Execution execution({.threads = 2});
   const DisparityMap confidence = map_of({{-1, 0, 0.5F}, {kUnknown, 2, 3}});
   const auto marked = [&](double threshold) {
     Mask mask(3, 2);
     mask.fill(0);
     mask.at(2, 1) = 255;
-    mark_unsure(confidence.view(), threshold, execution, mask);
+    mark_unsure(confidence.view(), threshold, execution(), mask);
     return rows_of(mask);
   };
   EXPECT_EQ(marked(0), (MaskRows{{255, 255, 0}, {255, 0, 255}}));
@@ -57,7 +41,6 @@ TEST(MarkUnsure, MarksWhatIsNotAboveTheThresholdBesideWhatIsMarked) {
 }
 
 TEST(Fill, ConstantLinearAndNone) {
-  Execution execution({.threads = 2});
   Mask unmatched(5, 3);
   unmatched.fill(255);
   for (const int x : {0, 4}) {
@@ -65,7 +48,7 @@ TEST(Fill, ConstantLinearAndNone) {
   }
   const auto filled = [&](Fill fill, Side side, float right) {
     DisparityMap map = map_of({{9, 9, 9, 9, 9}, {4, kUnknown, 9, 9, right}, {8, 8, 8, 8, 8}});
-    fill_unmatched(unmatched, side, fill, execution, map);
+    fill_unmatched(unmatched, side, fill, execution(), map);
     return map;
   };
   const std::vector<float> line = {4, 4.25F, 4.5F, 4.75F, 5};
@@ -77,10 +60,8 @@ TEST(Fill, ConstantLinearAndNone) {
     EXPECT_EQ(rows_of(filled(fill, Side::kRight, 6)), (Rows{right, right, right}));
   }
   const DisparityMap none = filled(Fill::kNone, Side::kLeft, 6);
-  for (int y = 0; y < 3; ++y) {
-    for (int x = 0; x < 5; ++x) {
-      EXPECT_EQ(std::isnan(none.at(x, y)), unmatched.at(x, y) != 0);
-    }
+  for (const auto [x, y] : positions_of(5, 3)) {
+    EXPECT_EQ(std::isnan(none.at(x, y)), unmatched.at(x, y) != 0);
   }
   EXPECT_EQ(none.at(4, 1), 6);
 }
@@ -91,15 +72,13 @@ TEST(CrossCheckOfTwoComponents, EqualsPlainTranscription) {
     for (const double tolerance_px : {1.0, 1.5, 3.0}) {
       const auto noise = [&, w = width, h = height](int low, int high) {
         DisparityMap map(w, h);
-        for (int y = 0; y < h; ++y) {
-          for (int x = 0; x < w; ++x) {
-            map.at(x, y) = random() % 8 == 0
-                               ? kUnknown
-                               : static_cast<float>(low) +
-                                     static_cast<float>(
-                                         random() % static_cast<unsigned>(2 * (high - low) + 1)) /
-                                         2;
-          }
+        for (const auto [x, y] : positions_of(w, h)) {
+          map.at(x, y) =
+              random() % 8 == 0
+                  ? kUnknown
+                  : static_cast<float>(low) +
+                        static_cast<float>(random() % static_cast<unsigned>(2 * (high - low) + 1)) /
+                            2;
         }
         return map;
       };
@@ -109,11 +88,10 @@ TEST(CrossCheckOfTwoComponents, EqualsPlainTranscription) {
       const DisparityMap right_y = noise(-1, 2);
       Mask left;
       Mask right;
-      Execution execution({.threads = 2});
       const DisplacementView of_left{left_x.view(), left_y.view()};
       const DisplacementView of_right{right_x.view(), right_y.view()};
-      cross_check(of_left, of_right, Side::kLeft, tolerance_px, execution, left);
-      cross_check(of_right, of_left, Side::kRight, tolerance_px, execution, right);
+      cross_check(of_left, of_right, Side::kLeft, tolerance_px, execution(), left);
+      cross_check(of_right, of_left, Side::kRight, tolerance_px, execution(), right);
       const auto agrees = [&, w = width, h = height](int x, int y, bool is_left) {
         const double dx = (is_left ? left_x : right_x).at(x, y);
         const double dy = (is_left ? left_y : right_y).at(x, y);
@@ -130,11 +108,9 @@ TEST(CrossCheckOfTwoComponents, EqualsPlainTranscription) {
         return !std::isnan(back_x) && !std::isnan(back_y) && std::abs(dx - back_x) < tolerance_px &&
                std::abs(dy - back_y) < tolerance_px;
       };
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          ASSERT_EQ(left.at(x, y), agrees(x, y, true) ? 0 : 255) << x << ", " << y;
-          ASSERT_EQ(right.at(x, y), agrees(x, y, false) ? 0 : 255) << x << ", " << y;
-        }
+      for (const auto [x, y] : positions_of(width, height)) {
+        ASSERT_EQ(left.at(x, y), agrees(x, y, true) ? 0 : 255) << x << ", " << y;
+        ASSERT_EQ(right.at(x, y), agrees(x, y, false) ? 0 : 255) << x << ", " << y;
       }
     }
   }
@@ -152,11 +128,10 @@ struct RefinementCase {
   std::vector<std::string> steps;
 
   void refine(bool both = true) {
-    Execution execution({.threads = 2});
     RefinementWork work;
     const MapToRefine left_map{.side = Side::kLeft, .map = &left, .is_result = left_is_result};
     const MapToRefine right_map{.side = Side::kRight, .map = &right, .is_result = right_is_result};
-    refine_maps(options, left_map, both ? &right_map : nullptr, execution, work,
+    refine_maps(options, left_map, both ? &right_map : nullptr, execution(), work,
                 [&](std::string_view step) { steps.emplace_back(step); });
   }
   [[nodiscard]] std::vector<std::uint8_t> left_mask() const { return rows_of(left.unmatched)[0]; }
@@ -241,19 +216,15 @@ TEST(RefineMaps, EdgesOfEachImageMoveItsOwnMapBeforeTheCrossCheck) {
   constexpr int kHeight = 9;
   const auto image = [](int first) {
     Image<std::uint8_t> pixels(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        pixels.at(x, y) = x < first ? 30 : 220;
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      pixels.at(x, y) = x < first ? 30 : 220;
     }
     return Photograph{std::move(pixels)};
   };
   const auto map = [](int first) {
     DisparityMap result(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        result.at(x, y) = x < first ? 0.0F : 4.0F;
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      result.at(x, y) = x < first ? 0.0F : 4.0F;
     }
     return result;
   };
@@ -264,12 +235,11 @@ TEST(RefineMaps, EdgesOfEachImageMoveItsOwnMapBeforeTheCrossCheck) {
   pair.options.fill = Fill::kConstant;
   pair.left.disparity_px = map(27);
   pair.right.disparity_px = map(17);
-  Execution execution({.threads = 2});
   RefinementWork work;
   const MapToRefine left_map{.side = Side::kLeft, .image = &left_image, .map = &pair.left};
   const MapToRefine right_map{.side = Side::kRight, .image = &right_image, .map = &pair.right};
   std::vector<std::string> steps;
-  refine_maps(pair.options, right_map, &left_map, execution, work,
+  refine_maps(pair.options, right_map, &left_map, execution(), work,
               [&](std::string_view step) { steps.emplace_back(step); });
   EXPECT_THAT(steps, ElementsAre("edge snapping", "cross-check", "fill"));
   for (int y = 0; y < kHeight; ++y) {
@@ -292,11 +262,10 @@ TEST(RefineMaps, BothComponentsAreCheckedAndFilledTogether) {
   right.disparity_y_px.fill(-1);
   RefinementCase defaults;
   defaults.options.fill = Fill::kConstant;
-  Execution execution({.threads = 2});
   RefinementWork work;
   const MapToRefine left_map{.side = Side::kLeft, .map = &left};
   const MapToRefine right_map{.side = Side::kRight, .map = &right};
-  refine_maps(defaults.options, left_map, &right_map, execution, work, [](std::string_view) {});
+  refine_maps(defaults.options, left_map, &right_map, execution(), work, [](std::string_view) {});
   // The partner of (x, y) is (x − 1, y + 1): the first column and the last row have none.
   EXPECT_EQ(rows_of(left.unmatched),
             (MaskRows{{255, 0, 0, 0}, {255, 255, 0, 0}, {255, 255, 255, 255}}));
@@ -306,5 +275,4 @@ TEST(RefineMaps, BothComponentsAreCheckedAndFilledTogether) {
   EXPECT_EQ(left.disparity_y_px.at(0, 0), -1);
 }
 
-}  // namespace refinement_test
-}  // namespace vantage
+}  // namespace vantage::refinement_test

@@ -1,17 +1,12 @@
-#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <cmath>
-#include <limits>
 
-#include "engine/error.h"
 #include "engine/execution.h"
 #include "engine/reprojection/map_camera.h"
 #include "engine/reprojection/point_cloud.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace reprojection_test {
+namespace vantage::reprojection_test {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
@@ -50,15 +45,13 @@ TEST(Reprojection, OfExactMapsIsExact) {
     const Eigen::Matrix3d& matrix = pair.camera(side).matrix;
     const Eigen::Vector3d centre(side == Side::kLeft ? 0 : 0.193, 0, 0);
     DisparityMap map(61, 47);
-    for (int y = 0; y < map.height(); ++y) {
-      for (int x = 0; x < map.width(); ++x) {
-        const Eigen::Vector3d point =
-            meets(plane, centre, matrix.inverse() * Eigen::Vector3d(x, y, 1));
-        // Seen in both images, by projection.
-        const double x_left = 70 * point.x() / point.z() + 28.5;
-        const double x_right = 70 * (point.x() - 0.193) / point.z() + 41;
-        map.at(x, y) = static_cast<float>(x_left - x_right);
-      }
+    for (const auto [x, y] : positions_of(map)) {
+      const Eigen::Vector3d point =
+          meets(plane, centre, matrix.inverse() * Eigen::Vector3d(x, y, 1));
+      // Seen in both images, by projection.
+      const double x_left = 70 * point.x() / point.z() + 28.5;
+      const double x_right = 70 * (point.x() - 0.193) / point.z() + 41;
+      map.at(x, y) = static_cast<float>(x_left - x_right);
     }
     const MapCamera camera = map_camera(pair, side, 0.001);
     const Eigen::Matrix3d turn =
@@ -71,18 +64,16 @@ TEST(Reprojection, OfExactMapsIsExact) {
               in_the_world);
     Image<float> depths;
     depth_map(map.view(), camera.scale, kNoMaxDepth, execution, depths);
-    for (int y = 0; y < map.height(); ++y) {
-      for (int x = 0; x < map.width(); ++x) {
-        const Eigen::Vector3d truth =
-            meets(plane, centre, matrix.inverse() * Eigen::Vector3d(x, y, 1));
-        const Eigen::Vector3d point(points.at(x, y, 0), points.at(x, y, 1), points.at(x, y, 2));
-        EXPECT_LE((point - truth).norm(), 1e-6 * truth.norm());
-        EXPECT_FLOAT_EQ(depths.at(x, y), points.at(x, y, 2));
-        const Eigen::Vector3d world(in_the_world.at(x, y, 0), in_the_world.at(x, y, 1),
-                                    in_the_world.at(x, y, 2));
-        const Eigen::Vector3d true_world = turn * (pair.left.rotation.transpose() * truth) + place;
-        EXPECT_LE((world - true_world).norm(), 1e-6 * true_world.norm());
-      }
+    for (const auto [x, y] : positions_of(map)) {
+      const Eigen::Vector3d truth =
+          meets(plane, centre, matrix.inverse() * Eigen::Vector3d(x, y, 1));
+      const Eigen::Vector3d point(points.at(x, y, 0), points.at(x, y, 1), points.at(x, y, 2));
+      EXPECT_LE((point - truth).norm(), 1e-6 * truth.norm());
+      EXPECT_FLOAT_EQ(depths.at(x, y), points.at(x, y, 2));
+      const Eigen::Vector3d world(in_the_world.at(x, y, 0), in_the_world.at(x, y, 1),
+                                  in_the_world.at(x, y, 2));
+      const Eigen::Vector3d true_world = turn * (pair.left.rotation.transpose() * truth) + place;
+      EXPECT_LE((world - true_world).norm(), 1e-6 * true_world.norm());
     }
   }
 }
@@ -128,7 +119,7 @@ class Clouds : public testing::Test {
   DisparityMap map_{12, 9};
   Mask unmatched_{12, 9};
   Image<float> confidence_{12, 9};
-  Photograph image_ = test::noise<std::uint8_t>(12, 9, 3);
+  Photograph image_ = noise<std::uint8_t>(12, 9, 3);
   CloudSource source_;
 };
 
@@ -168,7 +159,7 @@ TEST_F(Clouds, HaveColoursAndConfidenceOfTheirPixels) {
     EXPECT_FLOAT_EQ(cloud.positions[3 * i + 2], 10 / map_.at(x, y));
     EXPECT_FLOAT_EQ(cloud.positions[3 * i], (static_cast<float>(x) - 5.5F) / map_.at(x, y));
   }
-  image_ = test::noise<std::uint16_t>(12, 9, 1);
+  image_ = noise<std::uint16_t>(12, 9, 1);
   const PointCloud grey = point_cloud(source_, {}, execution_);
   for (std::size_t i = 0; i < grey.size(); ++i) {
     EXPECT_EQ(grey.colours[3 * i], grey.colours[3 * i + 2]);
@@ -212,21 +203,19 @@ TEST_F(Clouds, AreTheSameForAnyExecution) {
 
 TEST_F(Clouds, SayWhatIsWrong) {
   const auto error = [&](const CloudOptions& options) {
-    return test::error_of([&] { (void)point_cloud(source_, options, execution_); });
+    return error_of([&] { (void)point_cloud(source_, options, execution_); });
   };
   EXPECT_EQ(error({.step_px = 0}), "cloud-step is 0, expected a number from 1 to 1024");
   EXPECT_EQ(error({.gradient_limit_px = 0}),
             "cloud-gradient-limit is 0, expected a number above 0");
   EXPECT_EQ(error({.max_depth = -1}), "max-depth is -1, expected a number above 0");
   EXPECT_EQ(error({.min_confidence = 0.75}).substr(0, 19), "the cloud is empty:");
-  EXPECT_EQ(test::error_of([&] {
-              (void)triangle_mesh(source_, {.step_px = 100}, execution_);
-            }).substr(0, 18),
-            "the mesh is empty:");
-  const Photograph other = test::noise<std::uint8_t>(11, 9, 3);
+  EXPECT_EQ(
+      error_of([&] { (void)triangle_mesh(source_, {.step_px = 100}, execution_); }).substr(0, 18),
+      "the mesh is empty:");
+  const Photograph other = noise<std::uint8_t>(11, 9, 3);
   source_.colours = &other;
   EXPECT_EQ(error({}), "the image is 11x9 but the disparity map is 12x9, expected equal sizes");
 }
 
-}  // namespace reprojection_test
-}  // namespace vantage
+}  // namespace vantage::reprojection_test

@@ -1,9 +1,8 @@
 #include "engine/profiling/roofline.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace roofline_test {
+namespace vantage::roofline_test {
 
 // Peak 100 GFLOP/s, L2 50 GB/s, memory 5 GB/s each: with 2 operations per byte both upper roofs
 // meet.
@@ -77,5 +76,4 @@ TEST(Roofline, RoofsAreThoseMeasuredOnAsManyThreads) {
   EXPECT_FALSE(roofs_on(profile, 2).has_value());
 }
 
-}  // namespace roofline_test
-}  // namespace vantage
+}  // namespace vantage::roofline_test

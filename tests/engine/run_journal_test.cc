@@ -1,23 +1,10 @@
 #include "engine/sequence/run_journal.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-
-#include "engine/error.h"
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/run_verification.h"
-#include "tests/temporary_folder.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace run_journal_test {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::run_journal_test {
 
 class RunJournalTest : public testing::Test {
  protected:
@@ -32,12 +19,7 @@ class RunJournalTest : public testing::Test {
     return {journal_, identity_, opening, part};
   }
   [[nodiscard]] std::string refusal(JournalOpening opening, const std::string& part = "all") const {
-    try {
-      open(opening, part);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
+    return error_of([&] { open(opening, part); });
   }
   static void append(RunJournal& journal, const JournalRecord& record) {
     journal.append({&record, 1});
@@ -300,16 +282,7 @@ TEST_F(RunJournalTest, VerificationFindsWhatIsNotAsItWasWritten) {
 }
 
 TEST_F(RunJournalTest, ADamagedDescriptionIsAnError) {
-  EXPECT_THAT(
-      [&] {
-        try {
-          RunJournal::read_identity(journal_);
-        } catch (const Error& error) {
-          return std::string(error.what());
-        }
-        return std::string();
-      }(),
-      HasSubstr("holds no run"));
+  EXPECT_THAT(error_of([&] { RunJournal::read_identity(journal_); }), HasSubstr("holds no run"));
   open(JournalOpening::kNew);
   for (const std::string text : {"", "{", "[]", R"({"format":2})", R"({"format":"2"})"}) {
     write(journal_ / "run.json", text);
@@ -388,5 +361,4 @@ TEST_F(RunJournalTest, FramesOfVideosAreDoneWithTheirSegment) {
   EXPECT_EQ(delivered().joined(), (FrameRange{0, 4}));
 }
 
-}  // namespace run_journal_test
-}  // namespace vantage
+}  // namespace vantage::run_journal_test

@@ -1,11 +1,8 @@
 #include "engine/profiling/run_measurement.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <vector>
-
-namespace vantage {
-namespace run_measurement_test {
+namespace vantage::run_measurement_test {
 
 RunMeasurement measured(double wall_s) {
   RunMeasurement run;
@@ -87,5 +84,4 @@ TEST(SummariseCounts, KeepsWhatAllRunsHave) {
   EXPECT_EQ(counts.at("cycles").median, 15);
 }
 
-}  // namespace run_measurement_test
-}  // namespace vantage
+}  // namespace vantage::run_measurement_test

@@ -1,45 +1,20 @@
 // Selection along rows (§3.15) of every aggregation against a plain transcription: what the
 // matcher selects costs no more than the best path through the oracle's energies.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/option_complaint.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/engine/plain_matching.h"
 
-namespace vantage {
-namespace scanline_selection_test {
-
-using test::complaint;
-
-using test::identical;
-using test::PixelKind;
-using test::textured_pair;
-using testing::HasSubstr;
+namespace vantage::scanline_selection_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-DisparityMaps maps_of(const test::PhotographPair& pair, const MatchOptions& options,
-                      const ExecutionOptions& how = {.threads = 1}) {
-  Execution execution(how);
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(pair.left, pair.right, {.confidence = true}, maps);
-  return maps;
-}
-
 /// One row of the oracle's energies.
 struct PlainRow {
-  const test::Volume& energies;
+  const Volume& energies;
   int y;
   const MethodParameters& parameters;
 
@@ -95,8 +70,8 @@ struct PlainRow {
 
 class ScanlineSelection : public ::testing::TestWithParam<int> {
  protected:
-  static const std::vector<test::MethodCase>& methods() {
-    static const auto cases = test::method_cases({-3, 14});
+  static const std::vector<MethodCase>& methods() {
+    static const auto cases = method_cases({-3, 14});
     return cases;
   }
   static MatchOptions options() {
@@ -115,15 +90,15 @@ TEST_P(ScanlineSelection, CostsNoMoreThanTheBestPath) {
     const DisparityMaps maps = maps_of(pair, options);
     for (const Side side : {Side::kLeft, Side::kRight}) {
       const bool is_left = side == Side::kLeft;
-      const test::Volume energies =
-          test::plain_aggregate(is_left ? pair.left : pair.right, is_left ? pair.right : pair.left,
-                                side, {-3, 14}, parameters);
+      const Volume energies =
+          plain_aggregate(is_left ? pair.left : pair.right, is_left ? pair.right : pair.left, side,
+                          {-3, 14}, parameters);
       for (int y = 0; y < energies.height; ++y) {
         const PlainRow row{energies, y, parameters};
         const double best = row.best_total();
         // Cells in steps or half floats stray from the oracle's: so may what is selected.
         const double tolerance =
-            test::is_stepped(methods()[static_cast<std::size_t>(GetParam())]) ? 0.05 : 1e-4;
+            is_stepped(methods()[static_cast<std::size_t>(GetParam())]) ? 0.05 : 1e-4;
         EXPECT_LE(row.total_of(maps.of(side).disparity_px.row(y)),
                   best + tolerance * std::max(1.0, std::abs(best)))
             << "row " << y << (is_left ? ", left" : ", right") << ", share " << share;
@@ -141,18 +116,16 @@ TEST_P(ScanlineSelection, FreeJumpsGiveWinners) {
   const DisparityMaps expected = maps_of(pair, winners);
   const DisparityMaps maps = maps_of(pair, free);
   int different = 0;
-  for (int y = 0; y < 17; ++y) {
-    for (int x = 0; x < 45; ++x) {
-      const float wanted = expected.left.disparity_px.at(x, y);
-      const float got = maps.left.disparity_px.at(x, y);
-      EXPECT_EQ(std::isnan(wanted), std::isnan(got));
-      // A margin of 0 is a tie, of which a path takes the candidate beside it.
-      different += !std::isnan(wanted) && wanted != got && maps.left.confidence.at(x, y) != 0;
-      if (wanted == got) {
-        const float confidence = expected.left.confidence.at(x, y);
-        EXPECT_NEAR(maps.left.confidence.at(x, y), confidence,
-                    1e-5 * std::max(1.0F, std::abs(confidence)));
-      }
+  for (const auto [x, y] : positions_of(45, 17)) {
+    const float wanted = expected.left.disparity_px.at(x, y);
+    const float got = maps.left.disparity_px.at(x, y);
+    EXPECT_EQ(std::isnan(wanted), std::isnan(got));
+    // A margin of 0 is a tie, of which a path takes the candidate beside it.
+    different += !std::isnan(wanted) && wanted != got && maps.left.confidence.at(x, y) != 0;
+    if (wanted == got) {
+      const float confidence = expected.left.confidence.at(x, y);
+      EXPECT_NEAR(maps.left.confidence.at(x, y), confidence,
+                  1e-5 * std::max(1.0F, std::abs(confidence)));
     }
   }
   EXPECT_LE(different, 45 * 17 / 100);  // means of windows are rounded
@@ -175,12 +148,10 @@ TEST_P(ScanlineSelection, DoesNotDependOnThePlan) {
   // Sub-pixel positions stay within half a pixel of what is selected.
   options.parameters.subpixel = Subpixel::kNone;
   const DisparityMaps whole = maps_of(pair, options);
-  for (int y = 0; y < 23; ++y) {
-    for (int x = 0; x < 59; ++x) {
-      if (!std::isnan(whole.left.disparity_px.at(x, y))) {
-        EXPECT_LE(std::abs(whole.left.disparity_px.at(x, y) - expected.left.disparity_px.at(x, y)),
-                  0.5F);
-      }
+  for (const auto [x, y] : positions_of(59, 23)) {
+    if (!std::isnan(whole.left.disparity_px.at(x, y))) {
+      EXPECT_LE(std::abs(whole.left.disparity_px.at(x, y) - expected.left.disparity_px.at(x, y)),
+                0.5F);
     }
   }
 }
@@ -197,22 +168,20 @@ TEST(ScanlineSelectionBetweenPixels, StaysWithinHalfAStep) {
   options.parameters.subpixel = Subpixel::kNone;
   const DisparityMaps selected = maps_of(pair, options);
   int fractions = 0;
-  for (int y = 0; y < 23; ++y) {
-    for (int x = 0; x < 59; ++x) {
-      const float px = selected.left.disparity_px.at(x, y);
-      EXPECT_EQ(4 * px, std::round(4 * px));
-      EXPECT_LE(std::abs(refined.left.disparity_px.at(x, y) - px), 0.125F);
-      fractions += px != std::round(px) ? 1 : 0;
-    }
+  for (const auto [x, y] : positions_of(59, 23)) {
+    const float px = selected.left.disparity_px.at(x, y);
+    EXPECT_EQ(4 * px, std::round(4 * px));
+    EXPECT_LE(std::abs(refined.left.disparity_px.at(x, y) - px), 0.125F);
+    fractions += px != std::round(px) ? 1 : 0;
   }
   EXPECT_GT(fractions, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Methods, ScanlineSelection,
-    ::testing::Range(0, static_cast<int>(test::method_cases({}).size())), [](const auto& instance) {
-      return test::method_cases({})[static_cast<std::size_t>(instance.param)].name;
-    });
+INSTANTIATE_TEST_SUITE_P(Methods, ScanlineSelection,
+                         ::testing::Range(0, static_cast<int>(method_cases({}).size())),
+                         [](const auto& instance) {
+                           return method_cases({})[static_cast<std::size_t>(instance.param)].name;
+                         });
 
 TEST(ScanlineSelectionOptions, AreCheckedTogether) {
   MatchOptions options;
@@ -243,5 +212,4 @@ TEST(ScanlineSelectionOptions, AreCheckedTogether) {
   EXPECT_THAT(complaint(options), HasSubstr("it is read by selection scanline"));
 }
 
-}  // namespace scanline_selection_test
-}  // namespace vantage
+}  // namespace vantage::scanline_selection_test

@@ -1,19 +1,10 @@
 #include "engine/scene_graph/scene_cloud.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
 #include <Eigen/Dense>
-#include <cmath>
-#include <vector>
 
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace scene_cloud_test {
-
-using test::error_of;
-using testing::HasSubstr;
+namespace vantage::scene_cloud_test {
 
 constexpr int kWidth = 61;
 constexpr int kHeight = 43;
@@ -69,12 +60,10 @@ class PlaneScene : public testing::Test {
   [[nodiscard]] SceneVertex vertex(int number) const {
     SceneVertex made;
     Image<std::uint8_t> image(kWidth, kHeight, 3);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        image.at(x, y, 0) = static_cast<std::uint8_t>(number);
-        image.at(x, y, 1) = static_cast<std::uint8_t>(x);
-        image.at(x, y, 2) = static_cast<std::uint8_t>(y);
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      image.at(x, y, 0) = static_cast<std::uint8_t>(number);
+      image.at(x, y, 1) = static_cast<std::uint8_t>(x);
+      image.at(x, y, 2) = static_cast<std::uint8_t>(y);
     }
     made.image = Photograph{std::move(image)};
     for (const StoredEdge& edge : stored_.edges) {
@@ -85,13 +74,11 @@ class PlaneScene : public testing::Test {
                        .length = edge.edge.length,
                        .disparity_px = DisparityMap(kWidth, kHeight),
                        .unmatched = Mask(kWidth, kHeight)};
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          const double wrong = number == wrong_vertex_ ? 1.3 : 1;
-          map.disparity_px.at(x, y) =
-              static_cast<float>(wrong * kFocalLength_px * edge.edge.length / depth(number, x, y));
-          map.unmatched.at(x, y) = x >= filled_from_x_ ? 255 : 0;
-        }
+      for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+        const double wrong = number == wrong_vertex_ ? 1.3 : 1;
+        map.disparity_px.at(x, y) =
+            static_cast<float>(wrong * kFocalLength_px * edge.edge.length / depth(number, x, y));
+        map.unmatched.at(x, y) = x >= filled_from_x_ ? 255 : 0;
       }
       made.maps.push_back(std::move(map));
     }
@@ -143,26 +130,24 @@ TEST_F(PlaneScene, EverySurfaceBecomesPointsOnce) {
   }
   for (int vertex = 0; vertex < 4; ++vertex) {
     int expected = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const SceneCamera& own = camera(vertex);
-        const Eigen::Vector3d point =
-            own.pose.rotation.transpose() *
-                (own.lens.matrix.inverse() * Eigen::Vector3d(x, y, 1) * depth(vertex, x, y)) +
-            own.pose.centre();
-        bool is_earlier = false;
-        int images = 0;
-        for (int other = 0; other < 4; ++other) {
-          const SceneCamera& by = camera(other);
-          const Eigen::Vector2d at =
-              (by.lens.matrix * (by.pose.rotation * point + by.pose.translation)).hnormalized();
-          const bool is_seen = std::round(at.x()) >= 0 && std::round(at.x()) < kWidth &&
-                               std::round(at.y()) >= 0 && std::round(at.y()) < kHeight;
-          images += is_seen ? 1 : 0;
-          is_earlier = is_earlier || (is_seen && other < vertex);
-        }
-        expected += images >= 2 && !is_earlier ? 1 : 0;
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      const SceneCamera& own = camera(vertex);
+      const Eigen::Vector3d point =
+          own.pose.rotation.transpose() *
+              (own.lens.matrix.inverse() * Eigen::Vector3d(x, y, 1) * depth(vertex, x, y)) +
+          own.pose.centre();
+      bool is_earlier = false;
+      int images = 0;
+      for (int other = 0; other < 4; ++other) {
+        const SceneCamera& by = camera(other);
+        const Eigen::Vector2d at =
+            (by.lens.matrix * (by.pose.rotation * point + by.pose.translation)).hnormalized();
+        const bool is_seen = std::round(at.x()) >= 0 && std::round(at.x()) < kWidth &&
+                             std::round(at.y()) >= 0 && std::round(at.y()) < kHeight;
+        images += is_seen ? 1 : 0;
+        is_earlier = is_earlier || (is_seen && other < vertex);
       }
+      expected += images >= 2 && !is_earlier ? 1 : 0;
     }
     // Half a pixel at a border may be rounded otherwise.
     EXPECT_NEAR(points_of[static_cast<std::size_t>(vertex)], expected, 3) << vertex;
@@ -206,5 +191,4 @@ TEST_F(PlaneScene, OptionsSelectPoints) {
   EXPECT_THAT(error_of([&] { (void)cloud({}); }), HasSubstr("the scene has no poses"));
 }
 
-}  // namespace scene_cloud_test
-}  // namespace vantage
+}  // namespace vantage::scene_cloud_test

@@ -1,25 +1,8 @@
 #include "engine/scene_graph/scene_layout.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <string>
-#include <vector>
-
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace scene_layout_test {
-
-using test::error_of;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+namespace vantage::scene_layout_test {
 
 SceneLayout layout_of(const std::vector<ScenePosition>& positions) {
   std::vector<std::string> names;
@@ -212,5 +195,4 @@ TEST(SceneLayout, RefusesWhatItCannotJoin) {
               HasSubstr("expected finite numbers"));
 }
 
-}  // namespace scene_layout_test
-}  // namespace vantage
+}  // namespace vantage::scene_layout_test

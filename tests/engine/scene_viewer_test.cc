@@ -1,34 +1,10 @@
 #include "engine/scene_graph/scene_viewer.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <map>
-#include <random>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
-
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace scene_viewer_test {
-
-using test::error_of;
-using test::same;
-using testing::HasSubstr;
-
-Execution& threads() {
-  static Execution execution({.threads = 2});
-  return execution;
-}
+namespace vantage::scene_viewer_test {
 
 /// A made-up scene seen from some cameras, with exact maps.
 class MadeUpScene {
@@ -36,7 +12,7 @@ class MadeUpScene {
   /// `positions` in baselines of the generator.
   explicit MadeUpScene(const std::vector<ScenePosition>& positions,
                        const LayeredSceneOptions& options = small())
-      : scene_(options, threads()),
+      : scene_(options, execution()),
         layout_(positions, std::vector<std::string>(positions.size(), "image")) {}
 
   static LayeredSceneOptions small() {
@@ -63,10 +39,8 @@ class MadeUpScene {
     for (const SceneEdge& edge : layout_.edges()) {
       if (edge.first == vertex || edge.second == vertex) {
         DisparityMap map(rendering.disparity.width(), rendering.disparity.height());
-        for (int y = 0; y < map.height(); ++y) {
-          for (int x = 0; x < map.width(); ++x) {
-            map.at(x, y) = rendering.disparity.at(x, y) * static_cast<float>(edge.length);
-          }
+        for (const auto [x, y] : positions_of(map)) {
+          map.at(x, y) = rendering.disparity.at(x, y) * static_cast<float>(edge.length);
         }
         Mask unmatched(map.width(), map.height());
         unmatched.fill(0);
@@ -79,19 +53,17 @@ class MadeUpScene {
     return result;
   }
   [[nodiscard]] SceneViewer viewer(const SynthesisOptions& options = {},
-                                   Execution& execution = threads()) const {
-    return {layout_, [this](int vertex) { return load(vertex); }, options, execution};
+                                   Execution& on = execution()) const {
+    return {layout_, [this](int vertex) { return load(vertex); }, options, on};
   }
 
   /// PSNR of a view against the rendering, where the images show anything.
   [[nodiscard]] double psnr(const SynthesizedView& view, ScenePosition position) const {
     Mask seen(view.holes.width(), view.holes.height());
-    for (int y = 0; y < seen.height(); ++y) {
-      for (int x = 0; x < seen.width(); ++x) {
-        seen.at(x, y) = static_cast<std::uint8_t>(255 - view.holes.at(x, y));
-      }
+    for (const auto [x, y] : positions_of(seen)) {
+      seen.at(x, y) = static_cast<std::uint8_t>(255 - view.holes.at(x, y));
     }
-    return evaluate_view(view.image, render(position).image, threads(), seen.view()).psnr_db;
+    return evaluate_view(view.image, render(position).image, execution(), seen.view()).psnr_db;
   }
 
  private:
@@ -169,7 +141,7 @@ TEST(SceneViewer, OneEdgeIsAPairOfTheSynthesizer) {
   const SceneVertex left = scene.load(0);
   const SceneVertex right = scene.load(1);
   SynthesizedView expected;
-  ViewSynthesizer(options, threads())
+  ViewSynthesizer(options, execution())
       .synthesize({left.image, right.image, left.maps[0].disparity_px.view(),
                    right.maps[0].disparity_px.view()},
                   0.3 / 0.8, expected);
@@ -217,10 +189,8 @@ TEST(SceneViewer, BrightnessMovesWithTheView) {
   const auto mean = [](const SynthesizedView& view) {
     const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
     double sum = 0;
-    for (int y = 0; y < image.height(); ++y) {
-      for (int i = 0; i < image.width() * 3; ++i) {
-        sum += image.row(y)[i];
-      }
+    for (const auto [i, y] : positions_of(image.width() * 3, image.height())) {
+      sum += image.row(y)[i];
     }
     return sum / (3.0 * image.width() * image.height());
   };
@@ -230,14 +200,13 @@ TEST(SceneViewer, BrightnessMovesWithTheView) {
         [&](int vertex) {
           SceneVertex loaded = scene.load(vertex);
           auto& image = std::get<Image<std::uint8_t>>(loaded.image.pixels);
-          for (int y = 0; y < image.height() && vertex == dark; ++y) {
-            for (int i = 0; i < image.width() * 3; ++i) {
-              image.row(y)[i] = static_cast<std::uint8_t>(0.7 * image.row(y)[i]);
-            }
+          for (const auto [i, y] :
+               positions_of(image.width() * 3, image.height() && vertex == dark)) {
+            image.row(y)[i] = static_cast<std::uint8_t>(0.7 * image.row(y)[i]);
           }
           return loaded;
         },
-        {}, threads());
+        {}, execution());
     const std::vector<ScenePosition>& places = scene.layout().positions();
     const ScenePosition at_dark = places[static_cast<std::size_t>(dark)];
     SceneViewer bright_viewer = scene.viewer();
@@ -281,7 +250,7 @@ TEST(SceneViewer, LoadsNoMoreThanItNeeds) {
         loaded.push_back(vertex);
         return scene.load(vertex);
       },
-      {}, threads());
+      {}, execution());
   SynthesizedView view;
   for (int step = 0; step <= 22; ++step) {
     viewer.synthesize({step * 0.05, 0}, view);
@@ -302,5 +271,4 @@ TEST(SceneViewer, RefusesWhatItCannotRender) {
   EXPECT_THAT(error_of([&] { (void)scene.viewer(forward); }), HasSubstr("one-pass"));
 }
 
-}  // namespace scene_viewer_test
-}  // namespace vantage
+}  // namespace vantage::scene_viewer_test

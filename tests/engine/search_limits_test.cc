@@ -1,14 +1,11 @@
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <random>
 
 #include "engine/matching/stereo_matcher.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace search_limits_test {
+namespace vantage::search_limits_test {
 
 constexpr int kWidth = 67;
 constexpr int kHeight = 45;
@@ -38,46 +35,41 @@ SlantedPair slanted_pair() {
   };
   Image<float> left(kWidth, kHeight);
   Image<float> right(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      left.at(x, y) = level(x, y) / 255;
-      // x_left = x + d with d = −3 + 13 · x_left / width.
-      const double x_left = (x - 3) / (1 - 13.0 / kWidth);
-      right.at(x, y) = level(x_left, y + 0.3) / 255;
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    left.at(x, y) = level(x, y) / 255;
+    // x_left = x + d with d = −3 + 13 · x_left / width.
+    const double x_left = (x - 3) / (1 - 13.0 / kWidth);
+    right.at(x, y) = level(x_left, y + 0.3) / 255;
   }
   return {{std::move(left)}, {std::move(right)}};
 }
 
 void expect_within(const DisparityMap& map, DisparityRange search, const std::string& what) {
-  for (int y = 0; y < map.height(); ++y) {
-    for (int x = 0; x < map.width(); ++x) {
-      const float d = map.at(x, y);
-      if (!std::isfinite(d)) {
-        continue;
-      }
-      ASSERT_GE(d, static_cast<float>(search.min)) << what << " at " << x << ", " << y;
-      ASSERT_LE(d, static_cast<float>(search.max)) << what << " at " << x << ", " << y;
+  for (const auto [x, y] : positions_of(map)) {
+    const float d = map.at(x, y);
+    if (!std::isfinite(d)) {
+      continue;
     }
+    ASSERT_GE(d, static_cast<float>(search.min)) << what << " at " << x << ", " << y;
+    ASSERT_LE(d, static_cast<float>(search.max)) << what << " at " << x << ", " << y;
   }
 }
 
 TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
   const SlantedPair pair = slanted_pair();
-  const std::vector<test::MethodCase> methods = test::method_cases(kSearch);
+  const std::vector<MethodCase> methods = method_cases(kSearch);
   constexpr Fill kFills[] = {Fill::kConstant, Fill::kLinear,    Fill::kMedian,
                              Fill::kNone,     Fill::kCanonical, Fill::kThinPlate};
-  Execution execution({.threads = 2});
   DisparityMaps maps;
-  const auto dimensions_fit = [&](const test::SampleRow& row) {
+  const auto dimensions_fit = [&](const SampleRow& row) {
     // Coarse to fine and edge snapping are along rows only.
     return row[4] == 0 ||
            (methods[static_cast<std::size_t>(row[0])].options.resolved().levels == 1 &&
             row[3] == 0);
   };
   // Methods, fills, surface fit, edge snapping, dimensions.
-  for (const test::SampleRow& row :
-       test::sampled_rows({static_cast<int>(methods.size()), 6, 3, 2, 2}, dimensions_fit)) {
+  for (const SampleRow& row :
+       sampled_rows({static_cast<int>(methods.size()), 6, 3, 2, 2}, dimensions_fit)) {
     MatchOptions options = methods[static_cast<std::size_t>(row[0])].options;
     options.raw = false;
     options.parameters.subpixel = Subpixel::kParabola;
@@ -88,10 +80,10 @@ TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
     if (row[4] == 1) {
       options.disparities_y = kSearchY;
     }
-    StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps);
+    StereoMatcher(options, execution()).match(pair.left, pair.right, {}, maps);
     const std::string what = methods[static_cast<std::size_t>(row[0])].name + ", fill " +
                              std::to_string(row[1]) + ", surface fit " +
-                             std::to_string(5 * row[2]) + ", " + test::sample_name();
+                             std::to_string(5 * row[2]) + ", " + sample_name();
     expect_within(maps.left.disparity_px, kSearch, what);
     expect_within(maps.right.disparity_px, kSearch, what);
     if (row[4] == 1) {
@@ -103,18 +95,16 @@ TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
 
 TEST(SearchLimits, PresetsKeepThem) {
   const SlantedPair pair = slanted_pair();
-  Execution execution({.threads = 2});
   DisparityMaps maps;
   for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
                                    MatchPreset::kBalanced, MatchPreset::kQuality}) {
     MatchOptions options;
     options.preset = preset;
     options.disparities = kSearch;
-    StereoMatcher(options, execution).match(pair.left, pair.right, {}, maps);
+    StereoMatcher(options, execution()).match(pair.left, pair.right, {}, maps);
     expect_within(maps.left.disparity_px, kSearch, "preset");
     expect_within(maps.right.disparity_px, kSearch, "preset");
   }
 }
 
-}  // namespace search_limits_test
-}  // namespace vantage
+}  // namespace vantage::search_limits_test

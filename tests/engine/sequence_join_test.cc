@@ -1,24 +1,12 @@
 #include "engine/sequence/sequence_join.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <vector>
-
 #include "engine/io/video/video_io.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 
-namespace vantage {
-namespace sequence_join_test {
+namespace vantage::sequence_join_test {
 
 namespace fs = std::filesystem;
-using test::bytes_of;
-using test::error_of;
-using testing::HasSubstr;
 
 class SequenceJoinTest : public testing::Test {
  protected:
@@ -103,26 +91,25 @@ TEST_F(SequenceJoinTest, SoundStartsAtTheTimeOfTheFirstFrame) {
   for (int frame = 0; frame < kFrames; ++frame) {
     append(FrameRecord{.frame = frame});
   }
-  test::Sound sound{16000, std::vector<float>(4 * 16000)};
+  Sound sound{16000, std::vector<float>(4 * 16000)};
   constexpr double kBeepSeconds = 1.75;
   for (int i = 0; i < 800; ++i) {
     sound.samples[static_cast<std::size_t>(kBeepSeconds * 16000) + i] = i % 16 < 8 ? 0.5F : -0.5F;
   }
-  test::put_numbered_video(folder_ / "silent.mp4", 4, {1, 1});
+  put_numbered_video(folder_ / "silent.mp4", 4, {1, 1});
   identity_.sound_file = folder_ / "film.mkv";
-  test::remux_video(folder_ / "silent.mp4", identity_.sound_file, "matroska", {1, 1}, sound);
+  remux_video(folder_ / "silent.mp4", identity_.sound_file, "matroska", {1, 1}, sound);
   identity_.sound_rate = options_.frame_rate;
   identity_.frame_times = FrameTimes{{1000, 1100, 1600, 1700, 2900}, 1, 1000, options_.frame_rate};
   join(true);
   const auto joined = VideoReader(video()).frame_times();
   ASSERT_TRUE(joined);
   EXPECT_NEAR(joined->seconds(2), 0.6, 1e-9);
-  const test::Sound heard = test::read_sound(video());
+  const Sound heard = read_sound(video());
   const auto loud = std::ranges::find_if(heard.samples, [](float x) { return x > 0.25F; });
   const auto samples = static_cast<double>(loud - heard.samples.begin());
   EXPECT_NEAR(samples / heard.samples_per_second, kBeepSeconds - 1, 0.01);
   EXPECT_NEAR(static_cast<double>(heard.samples.size()) / heard.samples_per_second, 1.9, 0.1);
 }
 
-}  // namespace sequence_join_test
-}  // namespace vantage
+}  // namespace vantage::sequence_join_test

@@ -1,25 +1,15 @@
 #include "engine/sequence/sequence_options.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <functional>
-#include <string>
-#include <vector>
-
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace sequence_options_test {
-
-using testing::HasSubstr;
+namespace vantage::sequence_options_test {
 
 TEST(SequenceOptions, WhatIsWrongIsNamed) {
   const auto refusal = [&](const std::function<void(SequenceOptions&)>& change) {
     SequenceOptions options;
     options.match.disparities = {0, 9};
     change(options);
-    return test::error_of([&] { options.validate(); });
+    return error_of([&] { options.validate(); });
   };
   using Options = SequenceOptions;
   EXPECT_EQ(refusal([](Options&) {}), "");
@@ -62,5 +52,4 @@ TEST(SequenceOptions, WhatIsWrongIsNamed) {
               HasSubstr("reuse is frame, expected none with a method without"));
 }
 
-}  // namespace sequence_options_test
-}  // namespace vantage
+}  // namespace vantage::sequence_options_test

@@ -1,17 +1,5 @@
 #include "engine/sequence/sequence_runner.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <sstream>
-
-#include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/io/video/video_io.h"
@@ -19,16 +7,12 @@
 #include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/sequence_join.h"
 #include "engine/synthesis/three_step_synthesizer.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/made_up_pairs.h"
-#include "tests/temporary_folder.h"
 
-namespace vantage {
-namespace sequence_runner_test {
+namespace vantage::sequence_runner_test {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 struct Way {
   ExecutionOptions execution = {.threads = 3};
@@ -170,12 +154,9 @@ TEST_F(SequenceRunnerTest, WritesWhatTheMatcherComputes) {
     const std::string name = "00000" + std::to_string(frame);
     const DisparityMap map = read_disparity(folder("a") / "disparity" / (name + ".pfm"));
     const Photograph mask = read_photograph(folder("a") / "unmatched" / (name + ".png"));
-    for (int y = 0; y < map.height(); ++y) {
-      for (int x = 0; x < map.width(); ++x) {
-        ASSERT_EQ(map.at(x, y), maps.right.disparity_px.at(x, y));
-        ASSERT_EQ(std::get<Image<std::uint8_t>>(mask.pixels).at(x, y),
-                  maps.right.unmatched.at(x, y));
-      }
+    for (const auto [x, y] : positions_of(map)) {
+      ASSERT_EQ(map.at(x, y), maps.right.disparity_px.at(x, y));
+      ASSERT_EQ(std::get<Image<std::uint8_t>>(mask.pixels).at(x, y), maps.right.unmatched.at(x, y));
     }
   }
 }
@@ -434,10 +415,8 @@ TEST_F(SequenceRunnerTest, SkippedFramesOfAVideoShowANeighbour) {
     double sum = 0;
     const auto& first = std::get<Image<std::uint8_t>>(a.pixels);
     const auto& second = std::get<Image<std::uint8_t>>(b.pixels);
-    for (int y = 0; y < first.height(); ++y) {
-      for (int x = 0; x < first.width(); ++x) {
-        sum += std::abs(first.at(x, y) - second.at(x, y));
-      }
+    for (const auto [x, y] : positions_of(first)) {
+      sum += std::abs(first.at(x, y) - second.at(x, y));
     }
     return sum / (first.width() * first.height());
   };
@@ -566,5 +545,4 @@ TEST(BusyClock, CountsOverlappingActivitiesOnce) {
   EXPECT_LE(clock.seconds(), elapsed);
 }
 
-}  // namespace sequence_runner_test
-}  // namespace vantage
+}  // namespace vantage::sequence_runner_test

@@ -1,18 +1,8 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <random>
-#include <string_view>
-#include <utility>
-#include <vector>
-
 #include "engine/matching/stereo_matcher.h"
 
-namespace vantage {
-namespace {
+#include "tests/engine/engine_test.h"
+
+namespace vantage::several_images_test {
 
 constexpr int kWidth = 160;
 constexpr int kHeight = 96;
@@ -36,13 +26,11 @@ class Scene {
   /// What a camera sees that is `place` distances of the first other camera to the right.
   [[nodiscard]] Photograph seen_from(double place) const {
     Image<std::uint8_t> image(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const int in_front = x + shift(kForegroundPx, place);
-        const bool is_square = in_front >= kFirst && in_front < kEnd && y >= kTop && y < kBottom;
-        image.at(x, y) =
-            is_square ? texel(0, in_front, y) : texel(1, x + shift(kBackgroundPx, place), y);
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      const int in_front = x + shift(kForegroundPx, place);
+      const bool is_square = in_front >= kFirst && in_front < kEnd && y >= kTop && y < kBottom;
+      image.at(x, y) =
+          is_square ? texel(0, in_front, y) : texel(1, x + shift(kBackgroundPx, place), y);
     }
     return {std::move(image)};
   }
@@ -65,17 +53,15 @@ class Scene {
 double unmatched_share(const MatchedMap& map, int first_column, int end_column) {
   int unmatched = 0;
   constexpr int kInset = 4;
-  for (int y = kTop + kInset; y < kBottom - kInset; ++y) {
-    for (int x = first_column; x < end_column; ++x) {
-      unmatched += map.unmatched.at(x, y) != 0 ? 1 : 0;
-    }
+  for (const auto [x, y] :
+       positions_of({first_column, end_column}, {kTop + kInset, kBottom - kInset})) {
+    unmatched += map.unmatched.at(x, y) != 0 ? 1 : 0;
   }
   return static_cast<double>(unmatched) /
          ((kBottom - kTop - 2 * kInset) * (end_column - first_column));
 }
 
 MatchedMap map_of(const MatchOptions& options, const std::vector<double>& places) {
-  Execution execution({.threads = 2});
   const Scene scene;
   const Photograph reference = scene.seen_from(0);
   std::vector<Photograph> photographs;
@@ -86,7 +72,7 @@ MatchedMap map_of(const MatchOptions& options, const std::vector<double>& places
     others.push_back({&photographs.back(), place});
   }
   DisparityMaps maps;
-  StereoMatcher(options, execution).match_several(reference, others, {}, maps);
+  StereoMatcher(options, execution()).match_several(reference, others, {}, maps);
   return std::move(maps.left);
 }
 
@@ -129,5 +115,4 @@ TEST(SeveralImages, WhatIsHiddenTakesTheBackground) {
   EXPECT_NEAR(map.disparity_px.at(kFirst - 3, kTop + 20), kBackgroundPx, 0.5);
 }
 
-}  // namespace
-}  // namespace vantage
+}  // namespace vantage::several_images_test

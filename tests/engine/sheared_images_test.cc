@@ -1,22 +1,8 @@
 #include "engine/scene_graph/sheared_images.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <utility>
-#include <vector>
-
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace sheared_images_test {
-
-Execution& threads() {
-  static Execution execution({.threads = 2});
-  return execution;
-}
+namespace vantage::sheared_images_test {
 
 /// A smooth picture, 0..1, that can be looked at anywhere.
 double intensity_at(double x, double y) {
@@ -25,10 +11,8 @@ double intensity_at(double x, double y) {
 
 Photograph picture(int width, int height, double right, double down) {
   Image<float> image(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      image.at(x, y) = static_cast<float>(intensity_at(x + right, y + down));
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    image.at(x, y) = static_cast<float>(intensity_at(x + right, y + down));
   }
   Photograph photograph;
   photograph.pixels = std::move(image);
@@ -41,18 +25,16 @@ TEST(ShearedImages, ShowEveryPositionOnItsLine) {
   for (const double slope : {-1.0, -0.37, 0.0, 0.2, 1.0}) {
     for (const auto& [width, height] : kSizes) {
       const Shear shear(slope, width);
-      const Photograph result = sheared(picture(width, height, 0, 0), shear, threads());
+      const Photograph result = sheared(picture(width, height, 0, 0), shear, execution());
       const auto& image = std::get<Image<float>>(result.pixels);
       ASSERT_EQ(image.width(), width);
       ASSERT_EQ(image.height(), shear.height(height, width));
-      for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < width; ++x) {
-          const double row = y + slope * x - shear.offset;
-          const double last = height - 1;
-          if ((row > 1 && row < last - 1) || row <= 0 || row >= last) {
-            ASSERT_NEAR(image.at(x, y), intensity_at(x, std::clamp(row, 0.0, last)), 2e-3)
-                << slope << " " << width << "x" << height << " at " << x << "," << y;
-          }
+      for (const auto [x, y] : positions_of(width, image.height())) {
+        const double row = y + slope * x - shear.offset;
+        const double last = height - 1;
+        if ((row > 1 && row < last - 1) || row <= 0 || row >= last) {
+          ASSERT_NEAR(image.at(x, y), intensity_at(x, std::clamp(row, 0.0, last)), 2e-3)
+              << slope << " " << width << "x" << height << " at " << x << "," << y;
         }
       }
       // Nothing is cut off: the rows of the corners lie inside.
@@ -68,20 +50,18 @@ TEST(ShearedImages, RowsOfAnObliquePairCorrespond) {
   constexpr double kDisparity = 6;  // along x
   for (const double slope : {-0.8, 0.45}) {
     const Shear shear(slope, 90);
-    const Photograph first = sheared(picture(90, 50, 0, 0), shear, threads());
+    const Photograph first = sheared(picture(90, 50, 0, 0), shear, execution());
     const Photograph second =
-        sheared(picture(90, 50, kDisparity, slope * kDisparity), shear, threads());
+        sheared(picture(90, 50, kDisparity, slope * kDisparity), shear, execution());
     const auto& left = std::get<Image<float>>(first.pixels);
     const auto& right = std::get<Image<float>>(second.pixels);
     int compared = 0;
-    for (int y = 0; y < left.height(); ++y) {
-      for (int x = 6; x < 90; ++x) {
-        const double row = y + slope * x - shear.offset;
-        const double partner = row - slope * kDisparity;
-        if (std::min(row, partner) > 1 && std::max(row, partner) < 48) {
-          ASSERT_NEAR(left.at(x, y), right.at(x - 6, y), 2e-3) << x << "," << y;
-          ++compared;
-        }
+    for (const auto [x, y] : positions_of({6, 90}, {0, left.height()})) {
+      const double row = y + slope * x - shear.offset;
+      const double partner = row - slope * kDisparity;
+      if (std::min(row, partner) > 1 && std::max(row, partner) < 48) {
+        ASSERT_NEAR(left.at(x, y), right.at(x - 6, y), 2e-3) << x << "," << y;
+        ++compared;
       }
     }
     EXPECT_GT(compared, 3000);
@@ -95,29 +75,25 @@ TEST(ShearedImages, MapsComeBackToTheImage) {
       const Shear shear(slope, width);
       DisparityMap map(width, shear.height(height, width));
       Mask mask(width, map.height());
-      for (int y = 0; y < map.height(); ++y) {
-        for (int x = 0; x < width; ++x) {
-          // Unknown along a line that is a row of the image.
-          const double row = y + slope * x - shear.offset;
-          const bool is_unknown = std::abs(row - 5) <= 0.5;
-          map.at(x, y) = is_unknown ? kUnknown : static_cast<float>(0.3 * row + 0.1 * x);
-          mask.at(x, y) = is_unknown ? 255 : 0;
-        }
+      for (const auto [x, y] : positions_of(width, map.height())) {
+        // Unknown along a line that is a row of the image.
+        const double row = y + slope * x - shear.offset;
+        const bool is_unknown = std::abs(row - 5) <= 0.5;
+        map.at(x, y) = is_unknown ? kUnknown : static_cast<float>(0.3 * row + 0.1 * x);
+        mask.at(x, y) = is_unknown ? 255 : 0;
       }
-      const DisparityMap back = unsheared_disparity(map.view(), shear, height, threads());
+      const DisparityMap back = unsheared_disparity(map.view(), shear, height, execution());
       const Mask mask_back = unsheared_mask(mask.view(), shear, height);
       ASSERT_EQ(back.height(), height);
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          const double row = y - slope * x + shear.offset;
-          if (std::abs(row - std::floor(row) - 0.5) > 1e-9) {  // else two rows are as near
-            EXPECT_EQ(mask_back.at(x, y), y == 5 ? 255 : 0) << slope << " " << x << "," << y;
-          }
-          if (y < 4 || y > 6) {
-            ASSERT_NEAR(back.at(x, y), 0.3 * y + 0.1 * x, 1e-4) << slope << " " << x << "," << y;
-          } else if (y == 5) {
-            ASSERT_TRUE(std::isnan(back.at(x, y)));
-          }
+      for (const auto [x, y] : positions_of(width, height)) {
+        const double row = y - slope * x + shear.offset;
+        if (std::abs(row - std::floor(row) - 0.5) > 1e-9) {  // else two rows are as near
+          EXPECT_EQ(mask_back.at(x, y), y == 5 ? 255 : 0) << slope << " " << x << "," << y;
+        }
+        if (y < 4 || y > 6) {
+          ASSERT_NEAR(back.at(x, y), 0.3 * y + 0.1 * x, 1e-4) << slope << " " << x << "," << y;
+        } else if (y == 5) {
+          ASSERT_TRUE(std::isnan(back.at(x, y)));
         }
       }
     }
@@ -127,17 +103,13 @@ TEST(ShearedImages, MapsComeBackToTheImage) {
 TEST(ShearedImages, SurfacesAreNotMixed) {
   const Shear shear(0.5, 4);
   DisparityMap map(4, shear.height(6, 4));
-  for (int y = 0; y < map.height(); ++y) {
-    for (int x = 0; x < 4; ++x) {
-      map.at(x, y) = y < 4 ? 2.0F : 30.0F;
-    }
+  for (const auto [x, y] : positions_of(4, map.height())) {
+    map.at(x, y) = y < 4 ? 2.0F : 30.0F;
   }
-  const DisparityMap back = unsheared_disparity(map.view(), shear, 6, threads());
-  for (int y = 0; y < 6; ++y) {
-    for (int x = 0; x < 4; ++x) {
-      const double row = y - 0.5 * x + shear.offset;
-      EXPECT_EQ(back.at(x, y), row < 3.5 ? 2.0F : 30.0F) << x << "," << y;
-    }
+  const DisparityMap back = unsheared_disparity(map.view(), shear, 6, execution());
+  for (const auto [x, y] : positions_of(4, 6)) {
+    const double row = y - 0.5 * x + shear.offset;
+    EXPECT_EQ(back.at(x, y), row < 3.5 ? 2.0F : 30.0F) << x << "," << y;
   }
 }
 
@@ -162,11 +134,10 @@ TEST(ShearedImages, EqualForAnyExecutionAndDepth) {
   Execution one({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   Execution many({.threads = 3, .band_height_px = 5});
   const Shear shear(-0.61, 37);
-  const Photograph source = test::noise<std::uint8_t>(37, 23, 3);
-  EXPECT_TRUE(test::same(sheared(source, shear, one), sheared(source, shear, many)));
-  const Photograph deep = test::noise<std::uint16_t>(37, 23, 1);
-  EXPECT_TRUE(test::same(sheared(deep, shear, one), sheared(deep, shear, many)));
+  const Photograph source = noise<std::uint8_t>(37, 23, 3);
+  EXPECT_TRUE(same(sheared(source, shear, one), sheared(source, shear, many)));
+  const Photograph deep = noise<std::uint16_t>(37, 23, 1);
+  EXPECT_TRUE(same(sheared(deep, shear, one), sheared(deep, shear, many)));
 }
 
-}  // namespace sheared_images_test
-}  // namespace vantage
+}  // namespace vantage::sheared_images_test

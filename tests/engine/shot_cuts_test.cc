@@ -1,17 +1,8 @@
 #include "engine/sequence/shot_cuts.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <random>
-
-namespace vantage {
-namespace shot_cuts_test {
-
-using testing::ElementsAre;
+namespace vantage::shot_cuts_test {
 
 /// Smooth pictures: scene and place decide what is seen, 0 ≤ place.
 Photograph picture(int scene, double place, double gain = 1, double offset = 0) {
@@ -25,16 +16,14 @@ Photograph picture(int scene, double place, double gain = 1, double offset = 0) 
     }
   }
   Image<std::uint8_t> image(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      double level = 100;
-      for (const auto& wave : waves) {
-        level +=
-            15 * std::sin((x + place) * (0.02 + wave[0] * 0.1) + y * wave[1] * 0.15 + 6 * wave[2]);
-      }
-      image.at(x, y) =
-          static_cast<std::uint8_t>(std::clamp(std::lround(gain * level + offset), 0L, 255L));
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    double level = 100;
+    for (const auto& wave : waves) {
+      level +=
+          15 * std::sin((x + place) * (0.02 + wave[0] * 0.1) + y * wave[1] * 0.15 + 6 * wave[2]);
     }
+    image.at(x, y) =
+        static_cast<std::uint8_t>(std::clamp(std::lround(gain * level + offset), 0L, 255L));
   }
   return {std::move(image)};
 }
@@ -90,10 +79,8 @@ TEST(ShotCuts, UnknownFramesAreNone) {
 
 TEST(Thumbnail, IsTheMeanOfEachPart) {
   Image<float> image(64, 48, 3);
-  for (int y = 0; y < 48; ++y) {
-    for (int k = 0; k < 3 * 64; ++k) {
-      image.row(y)[k] = static_cast<float>(y / 2 * 32 + k / 6) / 1000 * (y % 2 == 0 ? 1.5F : 0.5F);
-    }
+  for (const auto [k, y] : positions_of(3 * 64, 48)) {
+    image.row(y)[k] = static_cast<float>(y / 2 * 32 + k / 6) / 1000 * (y % 2 == 0 ? 1.5F : 0.5F);
   }
   const Thumbnail thumbnail = make_thumbnail({std::move(image)});
   for (int k = 0; k < 32 * 24; ++k) {
@@ -113,5 +100,4 @@ TEST(Thumbnail, OfTinyPictures) {
   }
 }
 
-}  // namespace shot_cuts_test
-}  // namespace vantage
+}  // namespace vantage::shot_cuts_test

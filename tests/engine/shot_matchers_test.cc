@@ -1,11 +1,8 @@
 #include "engine/sequence/shot_matchers.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <memory>
-
-namespace vantage {
-namespace shot_matchers_test {
+namespace vantage::shot_matchers_test {
 
 TEST(ShotMatchers, FramesOfOneRangeShareAMatcherThatLivesWhileReferenced) {
   MatchOptions options;
@@ -20,8 +17,7 @@ TEST(ShotMatchers, FramesOfOneRangeShareAMatcherThatLivesWhileReferenced) {
       shot.search = DisparityRange{0, 20 + i};
     }
   }
-  Execution execution({});
-  const ShotMatchers matchers(options, &shots, nullptr, execution);
+  const ShotMatchers matchers(options, &shots, nullptr, execution());
   const std::shared_ptr<const ShotMatcher> first = matchers.of(3, {});
   EXPECT_EQ(first->options.disparities, (DisparityRange{0, 15}));
   EXPECT_EQ(matchers.of(25, {}), first);  // the third shot has the range of the run, too
@@ -36,9 +32,8 @@ TEST(ShotMatchers, FramesOfOneRangeShareAMatcherThatLivesWhileReferenced) {
   EXPECT_NE(matchers.of(3, {}), first);
   EXPECT_EQ(first->options.disparities, (DisparityRange{0, 15}));
 
-  const ShotMatchers of_film(options, nullptr, nullptr, execution);
+  const ShotMatchers of_film(options, nullptr, nullptr, execution());
   EXPECT_EQ(of_film.of(3, {}), of_film.of(99, {}));
 }
 
-}  // namespace shot_matchers_test
-}  // namespace vantage
+}  // namespace vantage::shot_matchers_test

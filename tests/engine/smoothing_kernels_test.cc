@@ -1,18 +1,8 @@
 #include "engine/matching/aggregation/smoothing_kernels.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
-namespace vantage {
-namespace smoothing_kernels_test {
-
-using ::testing::ElementsAre;
+namespace vantage::smoothing_kernels_test {
 
 double gain(const std::vector<float>& kernel) {
   double sum = kernel[0];
@@ -80,5 +70,4 @@ TEST(SmoothingKernels, CascadeIsAsNearAsOddWidthsAllow) {
   }
 }
 
-}  // namespace smoothing_kernels_test
-}  // namespace vantage
+}  // namespace vantage::smoothing_kernels_test

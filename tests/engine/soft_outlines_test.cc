@@ -1,19 +1,8 @@
 #include "engine/synthesis/soft_outlines.h"
+#include "tests/engine/engine_test.h"
 #include "tests/test_sample.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
-namespace vantage {
-namespace soft_outlines_test {
+namespace vantage::soft_outlines_test {
 
 // Any function of the question, unknown for some.
 double some_coverage(const SurfaceEdge& edge) {
@@ -25,14 +14,12 @@ double some_coverage(const SurfaceEdge& edge) {
 
 DisparityMap random_nearness(std::mt19937& random, int width, int height) {
   DisparityMap map(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const auto event = random() % 12;
-      const float before = x > 0 ? map.at(x - 1, y) : 3.0F;
-      map.at(x, y) = event == 0                        ? std::numeric_limits<float>::quiet_NaN()
-                     : event < 4 || std::isnan(before) ? static_cast<float>(random() % 9)
-                                                       : before;
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    const auto event = random() % 12;
+    const float before = x > 0 ? map.at(x - 1, y) : 3.0F;
+    map.at(x, y) = event == 0                        ? std::numeric_limits<float>::quiet_NaN()
+                   : event < 4 || std::isnan(before) ? static_cast<float>(random() % 9)
+                                                     : before;
   }
   return map;
 }
@@ -98,7 +85,6 @@ std::vector<double> plain(const Image<T>& image, const DisparityMap& nearness, i
 
 template <typename T>
 class SoftOutlines : public testing::Test {};
-using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(SoftOutlines, PixelTypes);
 
 TYPED_TEST(SoftOutlines, EqualThePlainDefinition) {
@@ -106,29 +92,25 @@ TYPED_TEST(SoftOutlines, EqualThePlainDefinition) {
   std::mt19937 random(1);
   constexpr std::pair<int, int> kSizes[] = {{1, 1},  {1, 9},  {9, 1},    {17, 33},
                                             {64, 3}, {65, 5}, {1024, 2}, {1025, 3}};
-  for (const test::SampleRow& row : test::sampled_rows({8, 3, 2})) {
+  for (const SampleRow& row : sampled_rows({8, 3, 2})) {
     const auto [width, height] = kSizes[row[0]];
     const int channels = row[1] == 0 ? 1 : row[1] + 2;
     Image<TypeParam> image(width, height, channels);
-    for (int y = 0; y < height; ++y) {
-      for (int k = 0; k < width * channels; ++k) {
-        image.row(y)[k] = kIsFloat ? static_cast<TypeParam>(static_cast<float>(random() % 1000))
-                                   : static_cast<TypeParam>(random());
-      }
+    for (const auto [k, y] : positions_of(width * channels, height)) {
+      image.row(y)[k] = kIsFloat ? static_cast<TypeParam>(static_cast<float>(random() % 1000))
+                                 : static_cast<TypeParam>(random());
     }
     const DisparityMap nearness = random_nearness(random, width, height);
     Execution execution(
         {.threads = row[2] == 0 ? 1 : 3, .executor = scheduler::ExecutorKind::kOpenMp});
     Image<TypeParam> softened = image.copy();
     soften_outlines<TypeParam>(some_coverage, nearness.view(), 1, softened.view(), execution);
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        const std::vector<double> expected = plain(image, nearness, x, y);
-        for (int c = 0; c < channels; ++c) {
-          ASSERT_NEAR(static_cast<double>(softened.at(x, y, c)),
-                      expected[static_cast<std::size_t>(c)], kIsFloat ? 1e-3 : 0.50001)
-              << width << "×" << height << " at " << x << ", " << y;
-        }
+    for (const auto [x, y] : positions_of(width, height)) {
+      const std::vector<double> expected = plain(image, nearness, x, y);
+      for (int c = 0; c < channels; ++c) {
+        ASSERT_NEAR(static_cast<double>(softened.at(x, y, c)),
+                    expected[static_cast<std::size_t>(c)], kIsFloat ? 1e-3 : 0.50001)
+            << width << "×" << height << " at " << x << ", " << y;
       }
     }
     EXPECT_LE(execution.scratch().bytes_held(),
@@ -137,12 +119,9 @@ TYPED_TEST(SoftOutlines, EqualThePlainDefinition) {
 }
 
 TEST(SoftOutlinesOfOneSurface, AreNone) {
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   DisparityMap nearness(70, 20);
-  for (int y = 0; y < 20; ++y) {
-    for (int x = 0; x < 70; ++x) {
-      nearness.at(x, y) = static_cast<float>(x - y);  // steps of the limit, not above
-    }
+  for (const auto [x, y] : positions_of(70, 20)) {
+    nearness.at(x, y) = static_cast<float>(x - y);  // steps of the limit, not above
   }
   Image<std::uint8_t> image(70, 20, 1);
   image.fill(9);
@@ -152,9 +131,8 @@ TEST(SoftOutlinesOfOneSurface, AreNone) {
         ++questions;
         return 0.5;
       },
-      nearness.view(), 1, image.view(), execution);
+      nearness.view(), 1, image.view(), execution());
   EXPECT_EQ(questions, 0);
 }
 
-}  // namespace soft_outlines_test
-}  // namespace vantage
+}  // namespace vantage::soft_outlines_test

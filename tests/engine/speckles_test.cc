@@ -1,15 +1,8 @@
 #include "engine/refinement/speckles.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-#include <limits>
-#include <random>
-#include <utility>
-#include <vector>
-
-namespace vantage {
-namespace speckles_test {
+namespace vantage::speckles_test {
 
 /// A map of one or two components and which of its pixels are matched.
 struct Case {
@@ -36,26 +29,24 @@ struct Case {
         region.emplace_back(x, y);
       }
     };
-    for (int first_y = 0; first_y < map.height(); ++first_y) {
-      for (int first_x = 0; first_x < map.width(); ++first_x) {
-        region.clear();
-        if (unmatched.at(first_x, first_y) == 0) {
-          visit(first_x, first_y);
-        }
-        for (std::size_t i = 0; i < region.size(); ++i) {
-          const auto [x, y] = region[i];
-          for (const auto& [step_x, step_y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-            const int to_x = x + step_x;
-            const int to_y = y + step_y;
-            if (to_x >= 0 && to_x < map.width() && to_y >= 0 && to_y < map.height() &&
-                connects(x, y, to_x, to_y)) {
-              visit(to_x, to_y);
-            }
+    for (const auto [first_x, first_y] : positions_of(map)) {
+      region.clear();
+      if (unmatched.at(first_x, first_y) == 0) {
+        visit(first_x, first_y);
+      }
+      for (std::size_t i = 0; i < region.size(); ++i) {
+        const auto [x, y] = region[i];
+        for (const auto& [step_x, step_y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+          const int to_x = x + step_x;
+          const int to_y = y + step_y;
+          if (to_x >= 0 && to_x < map.width() && to_y >= 0 && to_y < map.height() &&
+              connects(x, y, to_x, to_y)) {
+            visit(to_x, to_y);
           }
         }
-        for (const auto& [x, y] : region) {
-          sizes.at(x, y) = static_cast<float>(region.size());
-        }
+      }
+      for (const auto& [x, y] : region) {
+        sizes.at(x, y) = static_cast<float>(region.size());
       }
     }
     return sizes;
@@ -70,15 +61,13 @@ Case random_case(std::mt19937& random, int width, int height, unsigned holes, un
   if (is_two_dimensional) {
     made.map_y.resize(width, height);
   }
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      made.unmatched.at(x, y) = random() % 100 < holes ? 255 : 0;
-      const bool is_known = made.unmatched.at(x, y) == 0 || random() % 2 == 0;
-      for (DisparityMap* component : {&made.map, &made.map_y}) {
-        if (!component->empty()) {
-          component->at(x, y) = is_known ? 0.75F * static_cast<float>(random() % levels)
-                                         : std::numeric_limits<float>::quiet_NaN();
-        }
+  for (const auto [x, y] : positions_of(width, height)) {
+    made.unmatched.at(x, y) = random() % 100 < holes ? 255 : 0;
+    const bool is_known = made.unmatched.at(x, y) == 0 || random() % 2 == 0;
+    for (DisparityMap* component : {&made.map, &made.map_y}) {
+      if (!component->empty()) {
+        component->at(x, y) = is_known ? 0.75F * static_cast<float>(random() % levels)
+                                       : std::numeric_limits<float>::quiet_NaN();
       }
     }
   }
@@ -88,13 +77,11 @@ Case random_case(std::mt19937& random, int width, int height, unsigned holes, un
 void expect_marked(Case& made, int min, SpeckleWork& work) {
   const Image<float> sizes = made.region_sizes();
   mark_speckles(made.map.view(), made.map_y.view(), min, work, made.unmatched);
-  for (int y = 0; y < made.map.height(); ++y) {
-    for (int x = 0; x < made.map.width(); ++x) {
-      const bool is_kept = sizes.at(x, y) > 0 && sizes.at(x, y) >= static_cast<float>(min);
-      ASSERT_EQ(made.unmatched.at(x, y), is_kept ? 0 : 255)
-          << made.map.width() << "x" << made.map.height() << ", least " << min << ", at " << x
-          << ", " << y;
-    }
+  for (const auto [x, y] : positions_of(made.map)) {
+    const bool is_kept = sizes.at(x, y) > 0 && sizes.at(x, y) >= static_cast<float>(min);
+    ASSERT_EQ(made.unmatched.at(x, y), is_kept ? 0 : 255)
+        << made.map.width() << "x" << made.map.height() << ", least " << min << ", at " << x << ", "
+        << y;
   }
 }
 
@@ -133,15 +120,12 @@ TEST(Speckles, ACombIsOneRegion) {
   for (const bool has_back : {false, true}) {
     Case comb{DisparityMap(kWidth, kHeight), DisparityMap(), Mask(kWidth, kHeight)};
     comb.map.fill(3);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        comb.unmatched.at(x, y) = x % 2 == 0 || (has_back && y == kHeight - 1) ? 0 : 255;
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      comb.unmatched.at(x, y) = x % 2 == 0 || (has_back && y == kHeight - 1) ? 0 : 255;
     }
     expect_marked(comb, kHeight + 1, work);
     EXPECT_EQ(comb.unmatched.at(0, 0), has_back ? 0 : 255);
   }
 }
 
-}  // namespace speckles_test
-}  // namespace vantage
+}  // namespace vantage::speckles_test

@@ -1,28 +1,15 @@
 #include "engine/matching/selection/stage_cell_selection.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <ostream>
-#include <random>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/image/image.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/cell_stages.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_column.h"
 #include "tests/kernels/cell_winner_rows.h"
 
-namespace vantage {
-namespace stage_cell_selection_test {
+namespace vantage::stage_cell_selection_test {
 
 using kernels::CellKind;
-using test::CellVolume;
-using test::PlainColumn;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
@@ -49,10 +36,8 @@ struct Maps {
   [[nodiscard]] std::vector<std::uint32_t> bits() const {
     std::vector<std::uint32_t> bits;
     for (const Image<float>* map : {&disparity_px, &confidence, &energy}) {
-      for (int y = 0; y < map->height(); ++y) {
-        for (int x = 0; x < map->width(); ++x) {
-          bits.push_back(std::bit_cast<std::uint32_t>(map->at(x, y)));
-        }
+      for (const auto [x, y] : positions_of(*map)) {
+        bits.push_back(std::bit_cast<std::uint32_t>(map->at(x, y)));
       }
     }
     return bits;
@@ -103,11 +88,9 @@ Scene random_scene(std::mt19937& random, int width, int disparity_min, int count
                             ? CellKind::kProbability
                             : kernels::kEnergyKinds[random() % std::size(kernels::kEnergyKinds)];
   const float best = scene.settings.cells_are_probabilities ? 2.0F : -1e30F;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int i = 0; i < scene.cells.lanes; ++i) {
-        scene.cells.at(x, y, i) = scene.counts(x, i) ? kernels::random_cell(random, kind) : best;
-      }
+  for (const auto [x, y] : positions_of(width, rows)) {
+    for (int i = 0; i < scene.cells.lanes; ++i) {
+      scene.cells.at(x, y, i) = scene.counts(x, i) ? kernels::random_cell(random, kind) : best;
     }
   }
   return scene;
@@ -137,26 +120,24 @@ void expect_near(float actual, double expected, double tolerance, const char* wh
 
 void expect_plain_selection(const Scene& scene, const Maps& maps) {
   const double min_disparity = scene.geometry.disparity_min;
-  for (int y = 0; y < maps.energy.height(); ++y) {
-    for (int x = 0; x < maps.energy.width(); ++x) {
-      SCOPED_TRACE(::testing::Message() << "at " << x << ", " << y);
-      const PlainColumn column = scene.column(x, y);
-      const float actual[] = {maps.disparity_px.at(x, y), maps.confidence.at(x, y),
-                              maps.energy.at(x, y)};
-      if (!column.has_candidate()) {
-        ASSERT_TRUE(std::isnan(actual[0]) && std::isnan(actual[1]) && std::isnan(actual[2]));
-        continue;
-      }
-      const bool parabola = scene.settings.subpixel == Subpixel::kParabola;
-      const double index = parabola ? column.refined_winner() : column.winner();
-      ASSERT_NO_FATAL_FAILURE(
-          expect_near(actual[0], min_disparity + index, parabola ? 1e-6 : 0, "disparity"));
-      const bool entropy = scene.settings.confidence == ConfidenceMeasure::kEntropy;
-      ASSERT_NO_FATAL_FAILURE(expect_near(actual[1], expected_confidence(scene, column),
-                                          entropy ? 1e-5 : 2e-6, "confidence"));
-      ASSERT_NO_FATAL_FAILURE(expect_near(
-          actual[2], column.min(), scene.settings.cells_are_probabilities ? 1e-6 : 0, "energy"));
+  for (const auto [x, y] : positions_of(maps.energy)) {
+    SCOPED_TRACE(::testing::Message() << "at " << x << ", " << y);
+    const PlainColumn column = scene.column(x, y);
+    const float actual[] = {maps.disparity_px.at(x, y), maps.confidence.at(x, y),
+                            maps.energy.at(x, y)};
+    if (!column.has_candidate()) {
+      ASSERT_TRUE(std::isnan(actual[0]) && std::isnan(actual[1]) && std::isnan(actual[2]));
+      continue;
     }
+    const bool parabola = scene.settings.subpixel == Subpixel::kParabola;
+    const double index = parabola ? column.refined_winner() : column.winner();
+    ASSERT_NO_FATAL_FAILURE(
+        expect_near(actual[0], min_disparity + index, parabola ? 1e-6 : 0, "disparity"));
+    const bool entropy = scene.settings.confidence == ConfidenceMeasure::kEntropy;
+    ASSERT_NO_FATAL_FAILURE(expect_near(actual[1], expected_confidence(scene, column),
+                                        entropy ? 1e-5 : 2e-6, "confidence"));
+    ASSERT_NO_FATAL_FAILURE(expect_near(
+        actual[2], column.min(), scene.settings.cells_are_probabilities ? 1e-6 : 0, "energy"));
   }
 }
 
@@ -164,7 +145,7 @@ void expect_plain_selection(const Scene& scene, const Maps& maps) {
 void expect_right_every_way(const Scene& scene) {
   SCOPED_TRACE(::testing::PrintToString(scene));
   Maps maps(scene.cells.extent);
-  const test::CellSource source(scene.cells);
+  const CellSource source(scene.cells);
   const auto stage = make_cell_selection_stage(scene.geometry, scene.settings, maps.outputs());
   const scheduler::Supervised selection(*stage, scene.cells.extent);
   const scheduler::RowStage* chain[] = {&source, &selection};
@@ -172,7 +153,7 @@ void expect_right_every_way(const Scene& scene) {
   ASSERT_NO_FATAL_FAILURE(expect_plain_selection(scene, maps));
   const std::vector<std::uint32_t> expected = maps.bits();
   maps.spoil();
-  test::run_in_strips(chain, [&] {
+  run_in_strips(chain, [&] {
     ASSERT_EQ(maps.bits(), expected);
     maps.spoil();
   });
@@ -214,7 +195,7 @@ TEST(CellSelection, IsSureOfNothingWhereAllIsEqual) {
     Scene scene{{50, 0, 20, -1}, {}, {{50, 2}, 32}};
     scene.cells.cells.assign(scene.cells.cells.size(), energy);
     Maps maps(scene.cells.extent);
-    const test::CellSource source(scene.cells);
+    const CellSource source(scene.cells);
     const auto run = [&] {
       const auto stage = make_cell_selection_stage(scene.geometry, scene.settings, maps.outputs());
       const scheduler::RowStage* chain[] = {&source, stage.get()};
@@ -237,7 +218,7 @@ TEST(CellSelection, MapsThatAreNotWantedChangeNothing) {
     const Scene scene = random_scene(random, 70, -3, 40, -1);
     Maps all(scene.cells.extent);
     Maps some(scene.cells.extent);
-    const test::CellSource source(scene.cells);
+    const CellSource source(scene.cells);
     const auto run = [&](const MapOutputs& outputs) {
       const auto stage = make_cell_selection_stage(scene.geometry, scene.settings, outputs);
       const scheduler::RowStage* chain[] = {&source, stage.get()};
@@ -264,5 +245,4 @@ TEST(CellSelection, RefusesAConfidenceThatTheCellsDoNotHave) {
   EXPECT_THROW(make_cell_selection_stage(geometry, settings, maps.outputs()), Error);
 }
 
-}  // namespace stage_cell_selection_test
-}  // namespace vantage
+}  // namespace vantage::stage_cell_selection_test

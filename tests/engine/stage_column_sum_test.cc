@@ -1,28 +1,14 @@
 #include "engine/matching/aggregation/stage_column_sum.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <memory>
-#include <ostream>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 #include "engine/image/image.h"
 #include "engine/matching/selection/stage_window_selection.h"
 #include "tests/engine/cell_stages.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace stage_column_sum_test {
+namespace vantage::stage_column_sum_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
-using test::CellVolume;
 
 /// Costs of random_cells() lie within 100 of this; they are multiples of 1/8.
 constexpr float kMinCost = -37;
@@ -45,7 +31,7 @@ class ColumnSums : public ::testing::TestWithParam<std::tuple<Shape, int>> {
       : shape_(std::get<0>(GetParam())),
         geometry_{shape_.extent.columns, shape_.disparity_min, shape_.count,
                   std::get<1>(GetParam())},
-        costs_(test::random_cells(shape_.extent, geometry_.lanes(), kMinCost, 8)) {}
+        costs_(random_cells(shape_.extent, geometry_.lanes(), kMinCost, 8)) {}
 
   [[nodiscard]] std::unique_ptr<scheduler::RowStage> make_stage(ColumnSumScale scale) const {
     return make_column_sum_stage(geometry_, shape_.extent.rows, shape_.radius, scale.offset,
@@ -94,22 +80,20 @@ TEST_P(ColumnSums, AddRoundedCostsOfTheRowsInTheImage) {
   const ColumnSumScale scale = {-kMinCost, 0.75F};
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   stages.push_back(make_stage(scale));
-  const CellVolume<std::int32_t> sums = test::run_every_way<std::int32_t>(costs_, stages);
-  for (int y = 0; y < shape_.extent.rows; ++y) {
-    for (int x = 0; x < shape_.extent.columns; ++x) {
-      for (int i = 0; i < shape_.count; ++i) {
-        std::int32_t expected = 0;
-        for (int v = std::max(0, y - shape_.radius);
-             v <= std::min(shape_.extent.rows - 1, y + shape_.radius); ++v) {
-          expected += static_cast<std::int32_t>(
-              std::nearbyint((costs_.at(x, v, i) + scale.offset) * scale.scale));
-        }
-        if (has_partner(x, i)) {
-          ASSERT_EQ(sums.at(x, y, i), expected) << x << ", " << y << ", candidate " << i;
-        } else if ((i > 0 && has_partner(x, std::max(0, i - shape_.radius))) ||
-                   has_partner(x, std::min(shape_.count - 1, i + shape_.radius))) {
-          ASSERT_EQ(sums.at(x, y, i), 0) << x << ", " << y << ", candidate " << i;
-        }
+  const CellVolume<std::int32_t> sums = run_every_way<std::int32_t>(costs_, stages);
+  for (const auto [x, y] : positions_of(shape_.extent.columns, shape_.extent.rows)) {
+    for (int i = 0; i < shape_.count; ++i) {
+      std::int32_t expected = 0;
+      for (int v = std::max(0, y - shape_.radius);
+           v <= std::min(shape_.extent.rows - 1, y + shape_.radius); ++v) {
+        expected += static_cast<std::int32_t>(
+            std::nearbyint((costs_.at(x, v, i) + scale.offset) * scale.scale));
+      }
+      if (has_partner(x, i)) {
+        ASSERT_EQ(sums.at(x, y, i), expected) << x << ", " << y << ", candidate " << i;
+      } else if ((i > 0 && has_partner(x, std::max(0, i - shape_.radius))) ||
+                 has_partner(x, std::min(shape_.count - 1, i + shape_.radius))) {
+        ASSERT_EQ(sums.at(x, y, i), 0) << x << ", " << y << ", candidate " << i;
       }
     }
   }
@@ -127,30 +111,28 @@ TEST_P(ColumnSums, FeedWindowSelectionAsBruteForceDoes) {
     Image<float> disparity_px(shape_.extent.columns, shape_.extent.rows);
     MapOutputs outputs;
     outputs.disparity_px = disparity_px.view();
-    const test::CellSource source(costs_);
+    const CellSource source(costs_);
     const auto sum = make_stage(scale);
     const auto selection = make_window_selection_stage(geometry_, settings, outputs);
     const scheduler::RowStage* chain[] = {&source, sum.get(), selection.get()};
     const auto check = [&] {
-      for (int y = 0; y < shape_.extent.rows; ++y) {
-        for (int x = 0; x < shape_.extent.columns; ++x) {
-          double min = std::numeric_limits<double>::infinity();
-          double best = std::numeric_limits<double>::quiet_NaN();
-          for (int i = 0; i < shape_.count; ++i) {
-            if (const double mean = energy(x, y, i, border); mean < min) {
-              min = mean;
-              best = shape_.disparity_min + i;
-            }
+      for (const auto [x, y] : positions_of(shape_.extent.columns, shape_.extent.rows)) {
+        double min = std::numeric_limits<double>::infinity();
+        double best = std::numeric_limits<double>::quiet_NaN();
+        for (int i = 0; i < shape_.count; ++i) {
+          if (const double mean = energy(x, y, i, border); mean < min) {
+            min = mean;
+            best = shape_.disparity_min + i;
           }
-          const double actual = std::exchange(disparity_px.at(x, y), -1000.0F);
-          ASSERT_TRUE(actual == best || (std::isnan(actual) && std::isnan(best)))
-              << "column " << x << ", row " << y << ": " << actual << ", not " << best;
         }
+        const double actual = std::exchange(disparity_px.at(x, y), -1000.0F);
+        ASSERT_TRUE(actual == best || (std::isnan(actual) && std::isnan(best)))
+            << "column " << x << ", row " << y << ": " << actual << ", not " << best;
       }
     };
     scheduler::run_whole_image(chain);
     check();
-    test::run_in_strips(chain, check);
+    run_in_strips(chain, check);
   }
 }
 
@@ -184,5 +166,4 @@ TEST(ColumnSumScale, TakesCostsThatAreAllAlike) {
   EXPECT_EQ(scale.scale, 1);
 }
 
-}  // namespace stage_column_sum_test
-}  // namespace vantage
+}  // namespace vantage::stage_column_sum_test

@@ -1,32 +1,15 @@
 #include "engine/matching/costs/stage_cost.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <memory>
-#include <optional>
-#include <random>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
-#include "scheduler/strip_pipeline.h"
-#include "scheduler/whole_image_pipeline.h"
+#include "tests/engine/cell_stages.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_cost_cells.h"
 #include "tests/engine/table_keys.h"
 
-namespace vantage {
-namespace stage_cost_test {
+namespace vantage::stage_cost_test {
 
 using kernels::CandidateGeometry;
-using test::PlainCostCells;
-using test::PlainPartner;
 
-const std::vector<MatchCost> kCosts = test::all_costs();
+const std::vector<MatchCost> kCosts = all_costs();
 constexpr CellMeaning kMeanings[] = {CellMeaning::kEnergy, CellMeaning::kLikelihood};
 
 enum class Kind { kGrey8, kGrey16, kGreyFloat, kColour8, kAlphaFloat };
@@ -37,13 +20,11 @@ template <typename T>
 Photograph random_photograph(int width, int height, int channels, std::mt19937& random,
                              unsigned levels, double unit) {
   Image<T> image(width, height, channels);
-  for (int y = 0; y < height; ++y) {
-    for (int k = 0; k < width * channels; ++k) {
-      // Smooth in places, so that small differences are frequent.
-      const unsigned level = random() % 3 == 0 ? static_cast<unsigned>(random() % levels)
-                                               : levels / 2 + static_cast<unsigned>(k + y) % 7;
-      image.row(y)[k] = static_cast<T>(std::min(level, levels - 1) * unit);
-    }
+  for (const auto [k, y] : positions_of(width * channels, height)) {
+    // Smooth in places, so that small differences are frequent.
+    const unsigned level = random() % 3 == 0 ? static_cast<unsigned>(random() % levels)
+                                             : levels / 2 + static_cast<unsigned>(k + y) % 7;
+    image.row(y)[k] = static_cast<T>(std::min(level, levels - 1) * unit);
   }
   return {std::move(image)};
 }
@@ -65,37 +46,6 @@ Photograph random_photograph(Kind kind, int width, int height, unsigned seed) {
   return {};
 }
 
-/// The cells of a whole image.
-struct Cells {
-  Cells(scheduler::Extent extent, int lane_count)
-      : columns(static_cast<std::size_t>(extent.columns)),
-        lanes(static_cast<std::size_t>(lane_count)),
-        values(columns * static_cast<std::size_t>(extent.rows) * lanes, std::nanf("")) {}
-  [[nodiscard]] std::size_t index(int x, int y) const {
-    return (static_cast<std::size_t>(y) * columns + static_cast<std::size_t>(x)) * lanes;
-  }
-  std::size_t columns;
-  std::size_t lanes;
-  std::vector<float> values;
-};
-
-/// Last stage that keeps the cells it gets.
-class CellSink final : public scheduler::RowStage {
- public:
-  CellSink(scheduler::Extent extent, Cells& cells) : RowStage(extent), cells_(cells) {}
-  [[nodiscard]] std::string_view name() const override { return "cell sink"; }
-  [[nodiscard]] std::size_t bytes_per_column() const override { return 0; }
-  void make_row(const scheduler::RowTask& task) const override {
-    const auto skipped = static_cast<std::size_t>(task.columns.begin - task.input.columns().begin);
-    std::copy_n(task.input.row<float>(task.y) + skipped * cells_.lanes,
-                static_cast<std::size_t>(task.columns.size()) * cells_.lanes,
-                cells_.values.data() + cells_.index(task.columns.begin, task.y));
-  }
-
- private:
-  Cells& cells_;
-};
-
 /// One stage to be tested, with everything it looks at.
 struct CostCase {
   MethodParameters parameters = book_parameters(MatchMethod::kBayes);
@@ -105,6 +55,17 @@ struct CostCase {
   std::vector<Photograph> others;
   std::vector<PlainPartner> partners;  ///< photographs: of `others`, in order
 };
+
+std::string describe(const CostCase& test) {
+  return "cost " + std::to_string(static_cast<int>(test.parameters.cost)) + ", meaning " +
+         std::to_string(static_cast<int>(test.meaning)) + ", " +
+         std::to_string(test.geometry.width) + "x" + std::to_string(test.reference.height()) +
+         ", disparities from " + std::to_string(test.geometry.disparity_min) + ", direction " +
+         std::to_string(test.geometry.direction) + ", " + std::to_string(test.partners.size()) +
+         " partners, ratio " + std::to_string(test.partners.front().ratio) + ", row shift " +
+         std::to_string(test.partners.front().disparity_y_px) + ", " +
+         std::to_string(test.geometry.steps_per_px) + " steps a pixel";
+}
 
 class StageCost : public ::testing::Test {
  protected:
@@ -131,10 +92,10 @@ class StageCost : public ::testing::Test {
   }
 
   /// `strips`: by the strip pipeline instead.
-  Cells cells_of(const CostCase& test, bool strips = false) {
+  CellVolume<float> cells_of(const CostCase& test, bool strips = false) {
     const auto stage = make_stage(test);
-    Cells cells(stage->extent(), test.geometry.lanes());
-    const CellSink sink(stage->extent(), cells);
+    CellVolume<float> cells(stage->extent(), test.geometry.lanes());
+    const CellSink<float> sink(cells);
     const scheduler::RowStage* const chain[] = {stage.get(), &sink};
     if (!strips) {
       scheduler::run_whole_image(chain);
@@ -154,22 +115,32 @@ class StageCost : public ::testing::Test {
     }
     const PlainCostCells plain(test.parameters, test.geometry, test.reference, test.partners,
                                test.meaning);
-    const Cells cells = cells_of(test);
-    for (int y = 0; y < test.reference.height(); ++y) {
-      for (int x = 0; x < test.geometry.width; ++x) {
-        const std::vector<double> expected = plain.column(x, y);
-        const float* actual = cells.values.data() + cells.index(x, y);
-        for (int i = 0; i < test.geometry.lanes(); ++i) {
-          if (i < test.geometry.count) {
-            const double value = expected[static_cast<std::size_t>(i)];
-            ASSERT_NEAR(actual[i], value, bound(test, value))
-                << "at " << x << ", " << y << ", candidate " << i;
-          } else if (test.meaning == CellMeaning::kLikelihood) {
-            ASSERT_EQ(actual[i], 0);
-          } else {
-            ASSERT_TRUE(std::isfinite(actual[i]));
-          }
+    const CellVolume<float> cells = cells_of(test);
+    for (const auto [x, y] : positions_of(test.geometry.width, test.reference.height())) {
+      const std::vector<double> expected = plain.column(x, y);
+      const float* actual = &cells.at(x, y, 0);
+      for (int i = 0; i < test.geometry.lanes(); ++i) {
+        if (i < test.geometry.count) {
+          const double value = expected[static_cast<std::size_t>(i)];
+          ASSERT_NEAR(actual[i], value, bound(test, value))
+              << "at " << x << ", " << y << ", candidate " << i;
+        } else if (test.meaning == CellMeaning::kLikelihood) {
+          ASSERT_EQ(actual[i], 0);
+        } else {
+          ASSERT_TRUE(std::isfinite(actual[i]));
         }
+      }
+    }
+  }
+
+  /// Of each of `costs`, as energies and as likelihoods.
+  void expect_plain_cells(CostCase& test, const std::vector<MatchCost>& costs) {
+    for (const MatchCost cost : costs) {
+      test.parameters.cost = cost;
+      for (const CellMeaning meaning : kMeanings) {
+        test.meaning = meaning;
+        SCOPED_TRACE(describe(test));
+        ASSERT_NO_FATAL_FAILURE(expect_plain_cells(test));
       }
     }
   }
@@ -222,14 +193,6 @@ CostCase pair_case(Kind kind, const Shape& shape, int direction) {
   return test;
 }
 
-std::string describe(const CostCase& test) {
-  return "cost " + std::to_string(static_cast<int>(test.parameters.cost)) + ", meaning " +
-         std::to_string(static_cast<int>(test.meaning)) + ", " +
-         std::to_string(test.geometry.width) + "x" + std::to_string(test.reference.height()) +
-         ", disparities from " + std::to_string(test.geometry.disparity_min) + ", direction " +
-         std::to_string(test.geometry.direction);
-}
-
 TEST_F(StageCost, EqualsPlainCellsForAllCostsAndImages) {
   for (const Kind kind : kKinds) {
     for (const Shape& shape : kShapes) {
@@ -238,18 +201,7 @@ TEST_F(StageCost, EqualsPlainCellsForAllCostsAndImages) {
         test.parameters.census_thresholds = direction < 0 ? 3 : 1;
         for (const ColourUse colour : {ColourUse::kLuma, ColourUse::kChannels}) {
           test.parameters.colour = colour;
-          for (const MatchCost cost : kCosts) {
-            test.parameters.cost = cost;
-            for (const CellMeaning meaning : kMeanings) {
-              test.meaning = meaning;
-              SCOPED_TRACE(describe(test) + ", kind " + std::to_string(static_cast<int>(kind)) +
-                           ", colour " + std::to_string(static_cast<int>(colour)));
-              expect_plain_cells(test);
-              if (HasFatalFailure()) {
-                return;
-              }
-            }
-          }
+          ASSERT_NO_FATAL_FAILURE(expect_plain_cells(test, kCosts));
         }
       }
     }
@@ -290,18 +242,11 @@ TEST_F(StageCost, EqualsPlainCellsForOtherBaselines) {
         // show.
         CostCase test = pair_case(Kind::kGrey8, shape, direction);
         test.partners[0].ratio = ratio;
-        for (const MatchCost cost : test::all_costs()) {
-          if (ratio == 1. / 3 && cost_of(cost).unit == ResidualUnit::kCensusBits) {
-            continue;  // thirds are not exact
-          }
-          test.parameters.cost = cost;
-          for (const CellMeaning meaning : kMeanings) {
-            test.meaning = meaning;
-            SCOPED_TRACE(describe(test) + ", ratio " + std::to_string(ratio));
-            expect_plain_cells(test);
-            ASSERT_FALSE(HasFatalFailure());
-          }
-        }
+        // Thirds are not exact.
+        const auto costs = keys_in(cost_table(), [&](const MatchingCost& cost) {
+          return ratio != 1. / 3 || cost.unit != ResidualUnit::kCensusBits;
+        });
+        ASSERT_NO_FATAL_FAILURE(expect_plain_cells(test, costs));
       }
     }
   }
@@ -314,16 +259,7 @@ TEST_F(StageCost, EqualsPlainCellsForCandidatesBetweenPixels) {
         CostCase test = pair_case(Kind::kGrey8, shape, steps == 2 ? -1 : 1);
         test.geometry.steps_per_px = steps;
         test.partners[0].ratio = ratio;
-        for (const MatchCost cost : test::all_costs()) {
-          test.parameters.cost = cost;
-          for (const CellMeaning meaning : kMeanings) {
-            test.meaning = meaning;
-            SCOPED_TRACE(describe(test) + ", ratio " + std::to_string(ratio) + ", " +
-                         std::to_string(steps) + " steps");
-            expect_plain_cells(test);
-            ASSERT_FALSE(HasFatalFailure());
-          }
-        }
+        ASSERT_NO_FATAL_FAILURE(expect_plain_cells(test, all_costs()));
       }
     }
   }
@@ -335,15 +271,7 @@ TEST_F(StageCost, EqualsPlainCellsForOtherRowsAndSides) {
       for (const int direction : {-1, 1}) {
         CostCase test = pair_case(Kind::kGrey16, {21, 6, -4, 18}, direction);
         test.partners[0] = {nullptr, ratio, disparity_y_px};
-        for (const MatchCost cost : kCosts) {
-          test.parameters.cost = cost;
-          for (const CellMeaning meaning : kMeanings) {
-            test.meaning = meaning;
-            SCOPED_TRACE(describe(test) + ", row shift " + std::to_string(disparity_y_px));
-            expect_plain_cells(test);
-            ASSERT_FALSE(HasFatalFailure());
-          }
-        }
+        ASSERT_NO_FATAL_FAILURE(expect_plain_cells(test, kCosts));
       }
     }
   }
@@ -364,15 +292,7 @@ TEST_F(StageCost, EqualsPlainCellsForSeveralPartners) {
     for (const int direction : {-1, 1}) {
       for (const Shape& shape : kShapes) {
         CostCase test = several_partners(shape, direction, interpolated);
-        for (const MatchCost cost : kCosts) {
-          test.parameters.cost = cost;
-          for (const CellMeaning meaning : kMeanings) {
-            test.meaning = meaning;
-            SCOPED_TRACE(describe(test));
-            expect_plain_cells(test);
-            ASSERT_FALSE(HasFatalFailure());
-          }
-        }
+        ASSERT_NO_FATAL_FAILURE(expect_plain_cells(test, kCosts));
       }
     }
   }
@@ -385,15 +305,15 @@ TEST_F(StageCost, StripsEqualTheWholeImage) {
       for (const std::size_t partners : {std::size_t{1}, std::size_t{3}}) {
         test.others.resize(partners);
         test.partners.resize(partners);
-        for (const MatchCost cost : test::all_costs()) {
+        for (const MatchCost cost : all_costs()) {
           test.parameters.cost = cost;
           for (const CellMeaning meaning : kMeanings) {
             test.meaning = meaning;
             SCOPED_TRACE(describe(test));
-            const Cells whole = cells_of(test);
-            const Cells in_strips = cells_of(test, true);
-            ASSERT_EQ(std::memcmp(in_strips.values.data(), whole.values.data(),
-                                  whole.values.size() * sizeof(float)),
+            const CellVolume<float> whole = cells_of(test);
+            const CellVolume<float> in_strips = cells_of(test, true);
+            ASSERT_EQ(std::memcmp(in_strips.cells.data(), whole.cells.data(),
+                                  whole.cells.size() * sizeof(float)),
                       0);
           }
         }
@@ -404,21 +324,21 @@ TEST_F(StageCost, StripsEqualTheWholeImage) {
 }
 
 TEST_F(StageCost, ReusedImagesAndOtherThreadsChangeNothing) {
-  for (const MatchCost cost : test::all_costs()) {
+  for (const MatchCost cost : all_costs()) {
     CostCase large = pair_case(Kind::kColour8, {61, 40, -9, 33}, -1);
     large.parameters.cost = cost;
     large.parameters.colour = ColourUse::kChannels;
     CostCase small = pair_case(Kind::kGrey8, {13, 5, 0, 12}, -1);
     small.parameters.cost = cost;
     cells_of(large);
-    const Cells reused = cells_of(small);
+    const CellVolume<float> reused = cells_of(small);
     reference_ = {};
     images_.clear();
     ExecutionOptions serial;
     serial.threads = 1;
     serial.executor = scheduler::ExecutorKind::kSerial;
     execution_.emplace(serial);
-    EXPECT_EQ(cells_of(small).values, reused.values);
+    EXPECT_EQ(cells_of(small).cells, reused.cells);
     execution_.emplace(two_threads());
   }
 }
@@ -431,5 +351,4 @@ TEST_F(StageCost, RefusesBaselinesItCannotServe) {
   }
 }
 
-}  // namespace stage_cost_test
-}  // namespace vantage
+}  // namespace vantage::stage_cost_test

@@ -1,25 +1,17 @@
 // Bytes of energies against the logarithms of the likelihoods that the same costs give.
 #include "engine/matching/costs/stage_ray_census_energy.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <vector>
-
 #include "engine/matching/costs/ray_census_tables.h"
 #include "engine/matching/costs/stage_cost.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/cell_stages.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace stage_ray_census_energy_test {
+namespace vantage::stage_ray_census_energy_test {
 
 using kernels::CandidateGeometry;
 using scheduler::Extent;
-using test::CellSink;
-using test::CellVolume;
 
 struct Shape {
   Extent extent;
@@ -33,7 +25,6 @@ constexpr Shape kShapes[] = {{{1, 1}, {0, 0}},
                              {{53, 7}, {0, 63}, -9}};
 
 TEST(RayCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
-  Execution execution({.threads = 2});
   for (const Shape& shape : kShapes) {
     for (const double epsilon : {0.9, 0.1, 1e-6, 1e-20}) {
       for (const int direction : {-1, 1}) {
@@ -43,14 +34,14 @@ TEST(RayCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
         parameters.sigma_measurement = 4.8;
         parameters.epsilon_measurement = epsilon;
         const Extent extent = shape.extent;
-        const auto pair = test::textured_pair(extent.columns, extent.rows, shape.range,
-                                              test::PixelKind::kGrey8, 3);
+        const auto pair =
+            textured_pair(extent.columns, extent.rows, shape.range, PixelKind::kGrey8, 3);
         const CandidateGeometry geometry{extent.columns, shape.range.min, shape.range.count(),
                                          direction};
         CostImage reference;
         CostImage other;
-        reference.prepare(pair.left, parameters, geometry, {true, false, false}, execution);
-        other.prepare(pair.right, parameters, geometry, {false, true, true}, execution);
+        reference.prepare(pair.left, parameters, geometry, {true, false, false}, execution());
+        other.prepare(pair.right, parameters, geometry, {false, true, true}, execution());
         const CostPartner partner{.image = &other, .disparity_y_px = shape.disparity_y_px};
 
         CellVolume<float> likelihoods(extent, geometry.lanes());
@@ -69,18 +60,16 @@ TEST(RayCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
 
         const float step = ray_census_energies(parameters).step;
         EXPECT_LE(-std::log(epsilon), epsilon < 1e-13 ? 1e9 : 255 * step);
-        for (int y = 0; y < extent.rows; ++y) {
-          for (int x = 0; x < extent.columns; ++x) {
-            for (int i = 0; i < geometry.lanes(); ++i) {
-              const int cell = energies.at(x, y, i);
-              if (i >= geometry.count) {
-                ASSERT_EQ(cell, 255);
-                continue;
-              }
-              const double expected =
-                  std::min(255.0, -std::log(double{likelihoods.at(x, y, i)}) / step);
-              ASSERT_NEAR(cell, expected, 0.5 + 1e-3) << "at " << x << ", " << y << ", " << i;
+        for (const auto [x, y] : positions_of(extent.columns, extent.rows)) {
+          for (int i = 0; i < geometry.lanes(); ++i) {
+            const int cell = energies.at(x, y, i);
+            if (i >= geometry.count) {
+              ASSERT_EQ(cell, 255);
+              continue;
             }
+            const double expected =
+                std::min(255.0, -std::log(double{likelihoods.at(x, y, i)}) / step);
+            ASSERT_NEAR(cell, expected, 0.5 + 1e-3) << "at " << x << ", " << y << ", " << i;
           }
         }
       }
@@ -88,5 +77,4 @@ TEST(RayCensusEnergyStage, IsTheLogarithmOfTheLikelihoods) {
   }
 }
 
-}  // namespace stage_ray_census_energy_test
-}  // namespace vantage
+}  // namespace vantage::stage_ray_census_energy_test

@@ -1,25 +1,12 @@
 #include "engine/matching/aggregation/stage_smoothing.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <memory>
-#include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "engine/simd.h"
 #include "tests/engine/cell_stages.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace stage_smoothing_test {
+namespace vantage::stage_smoothing_test {
 
 using scheduler::Extent;
-using test::CellVolume;
 using Stages = std::vector<std::unique_ptr<scheduler::RowStage>>;
 
 /// Of the sum of the absolute values of all terms: what rounding to floats may cost.
@@ -64,23 +51,20 @@ void expect_convolved(const CellVolume<float>& input, const CellVolume<float>& a
                       const std::vector<double>& kernel) {
   const int radius = static_cast<int>(kernel.size() / 2);
   const auto [columns, rows] = input.extent;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      for (int i = 0; i < input.lanes; ++i) {
-        double sum = 0;
-        double magnitude = 0;
-        for (int v = std::max(0, y - radius); v <= std::min(rows - 1, y + radius); ++v) {
-          for (int u = std::max(0, x - radius); u <= std::min(columns - 1, x + radius); ++u) {
-            const double term = kernel[static_cast<std::size_t>(v - y + radius)] *
-                                kernel[static_cast<std::size_t>(u - x + radius)] *
-                                input.at(u, v, i);
-            sum += term;
-            magnitude += std::abs(term);
-          }
+  for (const auto [x, y] : positions_of(columns, rows)) {
+    for (int i = 0; i < input.lanes; ++i) {
+      double sum = 0;
+      double magnitude = 0;
+      for (int v = std::max(0, y - radius); v <= std::min(rows - 1, y + radius); ++v) {
+        for (int u = std::max(0, x - radius); u <= std::min(columns - 1, x + radius); ++u) {
+          const double term = kernel[static_cast<std::size_t>(v - y + radius)] *
+                              kernel[static_cast<std::size_t>(u - x + radius)] * input.at(u, v, i);
+          sum += term;
+          magnitude += std::abs(term);
         }
-        ASSERT_NEAR(actual.at(x, y, i), sum, kRelativeError * magnitude)
-            << "column " << x << ", row " << y << ", lane " << i;
       }
+      ASSERT_NEAR(actual.at(x, y, i), sum, kRelativeError * magnitude)
+          << "column " << x << ", row " << y << ", lane " << i;
     }
   }
 }
@@ -92,9 +76,9 @@ void expect_every_size(const std::function<Stages(const kernels::CandidateGeomet
       SCOPED_TRACE(::testing::Message()
                    << extent.columns << "x" << extent.rows << ", " << count << " candidates");
       const kernels::CandidateGeometry geometry = geometry_of(extent, count);
-      const CellVolume<float> input = test::random_cells(extent, geometry.lanes(), -50, 6);
+      const CellVolume<float> input = random_cells(extent, geometry.lanes(), -50, 6);
       const Stages stages = make(geometry, extent.rows);
-      expect_convolved(input, test::run_every_way<float>(input, stages), kernel);
+      expect_convolved(input, run_every_way<float>(input, stages), kernel);
       if (::testing::Test::HasFatalFailure()) {
         return;
       }
@@ -130,18 +114,18 @@ TEST(BoxCascadeStages, CountCellsOutsideTheImageOnce) {
   CellVolume<float> input({1, 1}, 16);
   std::fill(input.cells.begin(), input.cells.end(), 1.0F);
   const CellVolume<float> output =
-      test::run_every_way<float>(input, make_box_cascade_stages(geometry, 1, 2));
+      run_every_way<float>(input, make_box_cascade_stages(geometry, 1, 2));
   EXPECT_NEAR(output.at(0, 0, 7), 25.0 * 25 / (135 * 135), 1e-8);
 }
 
 TEST(SmoothingStages, GiveTheSameBitsOnEveryInstructionSet) {
   const Extent extent = {29, 17};
   const kernels::CandidateGeometry geometry = geometry_of(extent, 70);
-  const CellVolume<float> input = test::random_cells(extent, geometry.lanes(), -50, 7);
+  const CellVolume<float> input = random_cells(extent, geometry.lanes(), -50, 7);
   const auto run = [&](const Stages& stages) {
     CellVolume<float> output(extent, geometry.lanes());
-    const test::CellSource source(input);
-    const test::CellSink<float> sink(output);
+    const CellSource source(input);
+    const CellSink<float> sink(output);
     std::vector<const scheduler::RowStage*> chain = {&source};
     for (const auto& stage : stages) {
       chain.push_back(stage.get());
@@ -163,5 +147,4 @@ TEST(SmoothingStages, GiveTheSameBitsOnEveryInstructionSet) {
   force_instruction_set("best");
 }
 
-}  // namespace stage_smoothing_test
-}  // namespace vantage
+}  // namespace vantage::stage_smoothing_test

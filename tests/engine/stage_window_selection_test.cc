@@ -1,30 +1,17 @@
 #include "engine/matching/selection/stage_window_selection.h"
 
-#include <gtest/gtest.h>
-
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <iterator>
-#include <memory>
-#include <string>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/image/image.h"
 #include "engine/matching/aggregation/stage_column_ssd.h"
 #include "engine/matching/costs/intensity_planes.h"
 #include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/cell_stages.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_aggregation.h"
 #include "tests/engine/plain_column.h"
 #include "tests/engine/random_grey.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace stage_window_selection_test {
-
-using test::PlainColumn;
+namespace vantage::stage_window_selection_test {
 
 struct Shape {
   int width;
@@ -41,14 +28,14 @@ struct NoisePair {
   std::vector<double> means;  // [y][x][candidate], NaN where it may not win
 
   NoisePair(const Shape& shape, int direction, int levels, Border border)
-      : reference(test::random_grey(shape.width, shape.height, levels, 1)),
-        other(test::random_grey(shape.width, shape.height, levels, 2)) {
+      : reference(random_grey(shape.width, shape.height, levels, 1)),
+        other(random_grey(shape.width, shape.height, levels, 2)) {
     MethodParameters parameters = book_parameters(MatchMethod::kSsd);
     const DisparityRange range = {shape.disparity_min, shape.disparity_min + shape.count - 1};
     const Side side = direction < 0 ? Side::kLeft : Side::kRight;
-    means = test::plain_box_mean(test::plain_costs(reference, other, side, range, parameters),
-                                 shape.window, border)
-                .cells;
+    means =
+        plain_box_mean(plain_costs(reference, other, side, range, parameters), shape.window, border)
+            .cells;
   }
 };
 
@@ -65,9 +52,8 @@ class SsdChain {
         confidence_(shape.width, shape.height),
         energy_(shape.width, shape.height) {
     const bool left = direction < 0;
-    Execution execution({.threads = 1});
     pair_.prepare(left ? pair.reference : pair.other, left ? pair.other : pair.reference, geometry_,
-                  shape.window * shape.window, {left, !left}, execution);
+                  shape.window * shape.window, {left, !left}, execution());
     settings_.radius = shape.window / 2;
     settings_.index_bits = 2 * index_shift;
     const auto& planes = pair_.grey_8;
@@ -90,10 +76,8 @@ class SsdChain {
   [[nodiscard]] std::vector<std::uint32_t> bits() const {
     std::vector<std::uint32_t> bits;
     for (const Image<float>* map : {&disparity_px_, &confidence_, &energy_}) {
-      for (int y = 0; y < map->height(); ++y) {
-        for (int x = 0; x < map->width(); ++x) {
-          bits.push_back(std::bit_cast<std::uint32_t>(map->at(x, y)));
-        }
+      for (const auto [x, y] : positions_of(*map)) {
+        bits.push_back(std::bit_cast<std::uint32_t>(map->at(x, y)));
       }
     }
     return bits;
@@ -105,11 +89,9 @@ class SsdChain {
   }
 
   void expect_brute_force() const {
-    for (int y = 0; y < shape_.height; ++y) {
-      for (int x = 0; x < shape_.width; ++x) {
-        SCOPED_TRACE(::testing::Message() << "at " << x << ", " << y);
-        ASSERT_NO_FATAL_FAILURE(expect_brute_force(x, y));
-      }
+    for (const auto [x, y] : positions_of(shape_.width, shape_.height)) {
+      SCOPED_TRACE(::testing::Message() << "at " << x << ", " << y);
+      ASSERT_NO_FATAL_FAILURE(expect_brute_force(x, y));
     }
   }
   [[nodiscard]] const Image<float>& confidence() const { return confidence_; }
@@ -181,11 +163,10 @@ TEST_P(WindowSelection, EnergyAndConfidenceEqualBruteForce) {
       ConfidenceMeasure::kMargin, ConfidenceMeasure::kEntropy, ConfidenceMeasure::kEvidence};
   // Cells carry their indices where they fit, as 8-bit pairs are matched.
   const int index_shift = shape().count <= 64 && shape().window <= 9 ? 3 : 0;
-  static const auto rows = test::sampled_rows({kShapeCount, 2, 2, 3, 3, 2});
-  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
-    SCOPED_TRACE(::testing::Message()
-                 << "shape, direction, border, levels, measure, shift: "
-                 << ::testing::PrintToString(row) << ", " << test::sample_name());
+  static const auto rows = sampled_rows({kShapeCount, 2, 2, 3, 3, 2});
+  for (const SampleRow& row : rows_of(rows, GetParam())) {
+    SCOPED_TRACE(::testing::Message() << "shape, direction, border, levels, measure, shift: "
+                                      << ::testing::PrintToString(row) << ", " << sample_name());
     const int direction = kDirections[row[1]];
     const Border border = kBorders[row[2]];
     const int shift = row[5] == 0 ? 0 : index_shift;
@@ -203,8 +184,8 @@ TEST_P(WindowSelection, EnergyAndConfidenceEqualBruteForce) {
 }
 
 TEST_P(WindowSelection, EnergiesAreInTheUnitOfTheSettings) {
-  static const auto rows = test::sampled_rows({kShapeCount, 2, 2});
-  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
+  static const auto rows = sampled_rows({kShapeCount, 2, 2});
+  for (const SampleRow& row : rows_of(rows, GetParam())) {
     WindowSelectionSettings settings;
     settings.border = kBorders[row[2]];
     settings.confidence = ConfidenceMeasure::kEntropy;
@@ -220,8 +201,8 @@ TEST_P(WindowSelection, EnergiesAreInTheUnitOfTheSettings) {
 }
 
 TEST_P(WindowSelection, IsTheSameInStripsAndWithoutConfidence) {
-  static const auto rows = test::sampled_rows({kShapeCount, 2, 2, 2});
-  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
+  static const auto rows = sampled_rows({kShapeCount, 2, 2, 2});
+  for (const SampleRow& row : rows_of(rows, GetParam())) {
     WindowSelectionSettings settings;
     settings.border = kBorders[row[2]];
     settings.confidence = row[3] == 0 ? ConfidenceMeasure::kMargin : ConfidenceMeasure::kEntropy;
@@ -231,7 +212,7 @@ TEST_P(WindowSelection, IsTheSameInStripsAndWithoutConfidence) {
     chain.run();
     const std::vector<std::uint32_t> expected = chain.bits();
     chain.spoil();
-    test::run_in_strips(chain.stages(), [&] {
+    run_in_strips(chain.stages(), [&] {
       ASSERT_EQ(chain.bits(), expected);
       chain.spoil();
     });
@@ -259,5 +240,4 @@ TEST(WindowSelectionSettings, RefuseTheConfidenceOfProbabilities) {
   EXPECT_NO_THROW(make_window_selection_stage(geometry, settings, {map.view()}));
 }
 
-}  // namespace stage_window_selection_test
-}  // namespace vantage
+}  // namespace vantage::stage_window_selection_test

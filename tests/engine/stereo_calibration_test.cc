@@ -1,19 +1,11 @@
 #include "engine/rectification/stereo_calibration.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <random>
-#include <string>
 
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace stereo_calibration_test {
-
-using test::error_of;
-using test::put_text;
+namespace vantage::stereo_calibration_test {
 
 const char* const kYaml = R"(%YAML:1.0
 ---
@@ -216,10 +208,8 @@ TEST_F(CalibrationFiles, OpenCvOfRectifiedImages) {
   EXPECT_NEAR(read(q).baseline(), 0.125, 1e-12);
   EXPECT_EQ(read(q + "metres_per_unit: 0.01\n").metres_per_unit, 0.01);
   EXPECT_FALSE(read(q + "metres_per_unit: 0\n").has_scale);
-  EXPECT_NE(error(q + "metres_per_unit: -1\n").find("expected a number above 0"),
-            std::string::npos);
-  EXPECT_NE(error(replaced(q, "8, 80", "-8, 80")).find("Q is not that of cameras"),
-            std::string::npos);
+  EXPECT_THAT(error(q + "metres_per_unit: -1\n"), HasSubstr("expected a number above 0"));
+  EXPECT_THAT(error(replaced(q, "8, 80", "-8, 80")), HasSubstr("Q is not that of cameras"));
 
   // kYaml has P1 too.
   const std::string both =
@@ -450,5 +440,4 @@ TEST(CalibrationFilesOfDataSets, AreRead) {
             std::string::npos);
 }
 
-}  // namespace stereo_calibration_test
-}  // namespace vantage
+}  // namespace vantage::stereo_calibration_test

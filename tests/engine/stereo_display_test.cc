@@ -1,19 +1,8 @@
 #include "engine/image/stereo_display.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-
-#include "engine/error.h"
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace stereo_display_test {
-
-using test::noise;
-using test::same;
+namespace vantage::stereo_display_test {
 
 StereoDisplay display_of(std::string_view name) {
   const auto& names = stereo_display_names();
@@ -43,15 +32,13 @@ TYPED_TEST(StereoDisplayTest, RowsAndColumnsTakeTurns) {
       show_stereo(left, right, display_of(name), shown);
       ASSERT_EQ(shown.width(), columns ? 26 : 13);
       ASSERT_EQ(shown.height(), columns ? 7 : 14);
-      for (int y = 0; y < shown.height(); ++y) {
-        for (int x = 0; x < shown.width(); ++x) {
-          const bool is_first = (columns ? x : y) % 2 == 0;
-          const Photograph& source = is_first == (name[2] == 'l') ? left : right;
-          for (int c = 0; c < channels; ++c) {
-            ASSERT_EQ(value(shown, x, y, c),
-                      value(source, columns ? x / 2 : x, columns ? y : y / 2, c))
-                << name << ' ' << x << ' ' << y;
-          }
+      for (const auto [x, y] : positions_of(shown)) {
+        const bool is_first = (columns ? x : y) % 2 == 0;
+        const Photograph& source = is_first == (name[2] == 'l') ? left : right;
+        for (int c = 0; c < channels; ++c) {
+          ASSERT_EQ(value(shown, x, y, c),
+                    value(source, columns ? x / 2 : x, columns ? y : y / 2, c))
+              << name << ' ' << x << ' ' << y;
         }
       }
     }
@@ -122,5 +109,4 @@ TEST(StereoDisplay, UnequalShapesAreRefused) {
   }
 }
 
-}  // namespace stereo_display_test
-}  // namespace vantage
+}  // namespace vantage::stereo_display_test

@@ -1,32 +1,16 @@
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/chain/candidate_geometry.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <string>
-
-#include "engine/error.h"
 #include "engine/matching/chain/match_chain.h"
-#include "engine/simd.h"
 #include "scheduler/strip_pipeline.h"
 #include "scheduler/whole_image_pipeline.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/plain_aggregation.h"
 #include "tests/engine/plain_matching.h"
 #include "tests/engine/random_grey.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace stereo_matcher_test {
-
-using test::identical;
-using test::plain_match;
-using test::PlainMap;
-using test::random_grey;
+namespace vantage::stereo_matcher_test {
 
 MatchOptions raw_options(DisparityRange range, int window, Border border, Subpixel subpixel) {
   MatchOptions options;
@@ -41,7 +25,7 @@ MatchOptions raw_options(DisparityRange range, int window, Border border, Subpix
 
 bool has_candidate(const PlainMap& map) {
   return std::any_of(map.choices.begin(), map.choices.end(),
-                     [](const test::PlainChoice& choice) { return !std::isnan(choice.disparity); });
+                     [](const PlainChoice& choice) { return !std::isnan(choice.disparity); });
 }
 
 PlainMap plain_map(const Photograph& left, const Photograph& right, Side reference,
@@ -62,16 +46,14 @@ void expect_equals_plain_match(const Photograph& left, const Photograph& right,
         reference == Side::kLeft ? maps.left.disparity_px : maps.right.disparity_px;
     ASSERT_EQ(map.width(), left.width());
     ASSERT_EQ(map.height(), left.height());
-    for (int y = 0; y < map.height(); ++y) {
-      for (int x = 0; x < map.width(); ++x) {
-        const double expected = plain.at(x, y).disparity;
-        const double actual = map.at(x, y);
-        if (std::isnan(expected)) {
-          ASSERT_TRUE(std::isnan(actual)) << "at " << x << ", " << y;
-        } else {
-          ASSERT_NEAR(actual, expected, options.resolved().subpixel == Subpixel::kNone ? 0 : 1e-4)
-              << "at " << x << ", " << y;
-        }
+    for (const auto [x, y] : positions_of(map)) {
+      const double expected = plain.at(x, y).disparity;
+      const double actual = map.at(x, y);
+      if (std::isnan(expected)) {
+        ASSERT_TRUE(std::isnan(actual)) << "at " << x << ", " << y;
+      } else {
+        ASSERT_NEAR(actual, expected, options.resolved().subpixel == Subpixel::kNone ? 0 : 1e-4)
+            << "at " << x << ", " << y;
       }
     }
   }
@@ -96,12 +78,10 @@ class SsdShapes : public ::testing::TestWithParam<int> {};
 
 TEST_P(SsdShapes, EqualPlainMatch) {
   const Shape& shape = kShapes[GetParam()];
-  Execution execution({.threads = 2});
-  static const auto rows = test::sampled_rows({kShapeCount, 2, 2, 2});
-  for (const test::SampleRow& row : test::rows_of(rows, GetParam())) {
-    SCOPED_TRACE(::testing::Message()
-                 << "shape, border, subpixel, levels: " << ::testing::PrintToString(row) << ", "
-                 << test::sample_name());
+  static const auto rows = sampled_rows({kShapeCount, 2, 2, 2});
+  for (const SampleRow& row : rows_of(rows, GetParam())) {
+    SCOPED_TRACE(::testing::Message() << "shape, border, subpixel, levels: "
+                                      << ::testing::PrintToString(row) << ", " << sample_name());
     const MatchOptions options =
         raw_options(shape.range, shape.window, row[1] == 0 ? Border::kClip : Border::kValid,
                     row[2] == 0 ? Subpixel::kNone : Subpixel::kParabola);
@@ -109,13 +89,13 @@ TEST_P(SsdShapes, EqualPlainMatch) {
     const int levels = row[3] == 0 ? 2 : 256;
     const Photograph left = random_grey(shape.width, shape.height, levels, 1);
     const Photograph right = random_grey(shape.width, shape.height, levels, 2);
-    if (test::possible_range(options.disparities, shape.width).count() < 1 ||
+    if (possible_range(options.disparities, shape.width).count() < 1 ||
         !has_candidate(plain_map(left, right, Side::kLeft, options))) {
       DisparityMaps maps;
-      EXPECT_THROW(StereoMatcher(options, execution).match(left, right, {}, maps), Error);
+      EXPECT_THROW(StereoMatcher(options, execution()).match(left, right, {}, maps), Error);
       continue;
     }
-    expect_equals_plain_match(left, right, options, execution);
+    expect_equals_plain_match(left, right, options, execution());
   }
 }
 
@@ -126,42 +106,14 @@ INSTANTIATE_TEST_SUITE_P(AwkwardSizes, SsdShapes, ::testing::Range(0, kShapeCoun
                                   "_window_" + std::to_string(s.window);
                          });
 
-TEST(StereoMatcher, EqualsPlainMatchOnEveryInstructionSet) {
-  const Photograph left = random_grey(79, 13, 256, 3);
-  const Photograph right = random_grey(79, 13, 256, 4);
-  Execution execution({.threads = 1});
-  for (const int window : {3, 9, 33}) {
-    for (const DisparityRange range : {DisparityRange{-9, 37}, DisparityRange{0, 79}}) {
-      const MatchOptions options = raw_options(range, window, Border::kClip, Subpixel::kNone);
-      DisparityMaps expected;  // of the first set, which are the plain ones
-      for (const std::string& name : available_instruction_sets()) {
-        force_instruction_set(name);
-        ASSERT_EQ(instruction_set_in_use(), name);
-        if (expected.left.disparity_px.empty()) {
-          expect_equals_plain_match(left, right, options, execution);
-          StereoMatcher(options, execution).match(left, right, {}, expected);
-          continue;
-        }
-        DisparityMaps maps;
-        StereoMatcher(options, execution).match(left, right, {}, maps);
-        EXPECT_TRUE(identical(maps.left.disparity_px, expected.left.disparity_px)) << name;
-        EXPECT_TRUE(identical(maps.right.disparity_px, expected.right.disparity_px)) << name;
-      }
-    }
-  }
-  force_instruction_set("best");
-}
-
 /// Colour, 16-bit and float photographs: costs are rounded to fixed point, so winners may differ
 /// from double arithmetic where energies are as good as equal. That must be rare.
 template <typename T>
 Photograph random_photograph(int width, int height, int channels, double top, std::uint32_t seed) {
   std::mt19937 random(seed);
   Image<T> image(width, height, channels);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width * channels; ++x) {
-      image.row(y)[x] = static_cast<T>(top * (static_cast<double>(random()) / 4294967295.0));
-    }
+  for (const auto [x, y] : positions_of(width * channels, height)) {
+    image.row(y)[x] = static_cast<T>(top * (static_cast<double>(random()) / 4294967295.0));
   }
   return {std::move(image)};
 }
@@ -187,14 +139,13 @@ class SsdDepths : public ::testing::TestWithParam<int> {
 TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
   const Photograph left = photograph(GetParam(), 5);
   const Photograph right = photograph(GetParam(), 6);
-  Execution execution({.threads = 1});
   for (const int window : {1, 5, 25}) {
     const MatchOptions options = raw_options({-4, 30}, window, Border::kClip, Subpixel::kNone);
     DisparityMaps maps;
-    StereoMatcher(options, execution).match(left, right, {}, maps);
-    const test::Volume energies =
-        test::plain_aggregate(left, right, Side::kLeft, options.disparities, options.resolved());
-    const PlainMap plain = test::plain_select(energies, options.resolved());
+    StereoMatcher(options, execution()).match(left, right, {}, maps);
+    const Volume energies =
+        plain_aggregate(left, right, Side::kLeft, options.disparities, options.resolved());
+    const PlainMap plain = plain_select(energies, options.resolved());
     int different = 0;
     for (int y = 0; y < maps.left.disparity_px.height(); ++y) {
       for (int x = 0; x < maps.left.disparity_px.width(); ++x) {
@@ -216,42 +167,6 @@ TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SsdDepths, ::testing::Range(0, 5));
-
-TEST(StereoMatcher, ResultsDoNotDependOnExecution) {
-  using scheduler::ExecutorKind;
-  MatchOptions options;
-  options.disparities = {-3, 40};
-  for (const bool grey : {true, false}) {
-    const Photograph left =
-        grey ? random_grey(67, 41, 256, 7) : random_photograph<std::uint8_t>(67, 41, 3, 255.99, 7);
-    const Photograph right =
-        grey ? random_grey(67, 41, 256, 8) : random_photograph<std::uint8_t>(67, 41, 3, 255.99, 8);
-    DisparityMaps expected;
-    Execution serial({.threads = 1, .executor = ExecutorKind::kSerial});
-    StereoMatcher(options, serial).match(left, right, {}, expected);
-    constexpr ExecutorKind kKinds[] = {ExecutorKind::kTbb, ExecutorKind::kOpenMp,
-                                       ExecutorKind::kSerial};
-    constexpr int kThreads[] = {1, 2, 5};
-    constexpr int kStrips[] = {1, 13, 500};
-    for (const test::SampleRow& row : test::sampled_rows({3, 3, 3, 2})) {
-#ifdef __SANITIZE_THREAD__
-      if (kKinds[row[0]] == ExecutorKind::kOpenMp) {
-        continue;  // libgomp is not instrumented
-      }
-#endif
-      Execution execution({.threads = kThreads[row[1]],
-                           .executor = kKinds[row[0]],
-                           .strip_width_px = kStrips[row[2]],
-                           .band_height_px = row[3] == 0 ? 2 : 500});
-      DisparityMaps maps;
-      StereoMatcher(options, execution).match(left, right, {}, maps);
-      ASSERT_TRUE(identical(maps.left.disparity_px, expected.left.disparity_px) &&
-                  identical(maps.right.disparity_px, expected.right.disparity_px))
-          << "executor, threads, strip, band: " << ::testing::PrintToString(row) << ", "
-          << test::sample_name();
-    }
-  }
-}
 
 TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
   const Photograph left = random_grey(89, 37, 256, 9);
@@ -291,30 +206,25 @@ TEST(StereoMatcher, FindsAKnownShiftEverywhere) {
   const Photograph wide = random_grey(100 + shift, 40, 256, 11);
   Image<std::uint8_t> left(100, 40);
   Image<std::uint8_t> right(100, 40);
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 100; ++x) {
-      // A left pixel x looks at x − shift in the right image.
-      left.at(x, y) = std::get<Image<std::uint8_t>>(wide.pixels).at(x, y);
-      right.at(x, y) = std::get<Image<std::uint8_t>>(wide.pixels).at(x + shift, y);
-    }
+  for (const auto [x, y] : positions_of(100, 40)) {
+    // A left pixel x looks at x − shift in the right image.
+    left.at(x, y) = std::get<Image<std::uint8_t>>(wide.pixels).at(x, y);
+    right.at(x, y) = std::get<Image<std::uint8_t>>(wide.pixels).at(x + shift, y);
   }
   MatchOptions options;
   options.method = MatchMethod::kSsd;
   options.disparities = {0, 15};
-  Execution execution({});
   DisparityMaps maps;
-  StereoMatcher(options, execution).match({std::move(left)}, {std::move(right)}, {}, maps);
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 100; ++x) {
-      // Columns without a partner in the other image may agree by chance within the tolerance.
-      if (x >= shift) {
-        ASSERT_NEAR(maps.left.disparity_px.at(x, y), shift, 0.2) << x << ", " << y;
-        ASSERT_EQ(maps.left.unmatched.at(x, y), 0) << x << ", " << y;
-      }
-      if (x < 100 - shift) {
-        ASSERT_NEAR(maps.right.disparity_px.at(x, y), shift, 0.2) << x << ", " << y;
-        ASSERT_EQ(maps.right.unmatched.at(x, y), 0) << x << ", " << y;
-      }
+  StereoMatcher(options, execution()).match({std::move(left)}, {std::move(right)}, {}, maps);
+  for (const auto [x, y] : positions_of(100, 40)) {
+    // Columns without a partner in the other image may agree by chance within the tolerance.
+    if (x >= shift) {
+      ASSERT_NEAR(maps.left.disparity_px.at(x, y), shift, 0.2) << x << ", " << y;
+      ASSERT_EQ(maps.left.unmatched.at(x, y), 0) << x << ", " << y;
+    }
+    if (x < 100 - shift) {
+      ASSERT_NEAR(maps.right.disparity_px.at(x, y), shift, 0.2) << x << ", " << y;
+      ASSERT_EQ(maps.right.unmatched.at(x, y), 0) << x << ", " << y;
     }
   }
 }
@@ -322,38 +232,33 @@ TEST(StereoMatcher, FindsAKnownShiftEverywhere) {
 TEST(StereoMatcher, RefinedMapsAreDense) {
   MatchOptions options;
   options.disparities = {4, 20};  // the left columns have no candidate at all
-  Execution execution({});
   DisparityMaps maps;
-  StereoMatcher(options, execution)
+  StereoMatcher(options, execution())
       .match(random_grey(50, 20, 256, 12), random_grey(50, 20, 256, 13), {}, maps);
-  for (int y = 0; y < 20; ++y) {
-    for (int x = 0; x < 50; ++x) {
-      ASSERT_TRUE(std::isfinite(maps.left.disparity_px.at(x, y)));
-      ASSERT_TRUE(std::isfinite(maps.right.disparity_px.at(x, y)));
-    }
+  for (const auto [x, y] : positions_of(50, 20)) {
+    ASSERT_TRUE(std::isfinite(maps.left.disparity_px.at(x, y)));
+    ASSERT_TRUE(std::isfinite(maps.right.disparity_px.at(x, y)));
   }
 }
 
 TEST(StereoMatcher, RefusesWhatItCannotDo) {
-  Execution execution({});
   DisparityMaps maps;
   const Photograph image = random_grey(20, 10, 256, 14);
-  EXPECT_THROW(StereoMatcher({}, execution).match(image, random_grey(21, 10, 256, 1), {}, maps),
+  EXPECT_THROW(StereoMatcher({}, execution()).match(image, random_grey(21, 10, 256, 1), {}, maps),
                Error);
   MatchOptions options;
   options.disparities = {20, 30};
-  EXPECT_THROW(StereoMatcher(options, execution).match(image, image, {}, maps), Error);
+  EXPECT_THROW(StereoMatcher(options, execution()).match(image, image, {}, maps), Error);
   options = {};
   options.method = MatchMethod::kSsd;
   options.parameters.window_px = 8;
-  EXPECT_THROW(StereoMatcher(options, execution), UsageError);
+  EXPECT_THROW(StereoMatcher(options, execution()), UsageError);
   options = {};
   options.disparities = {5, 4};
-  EXPECT_THROW(StereoMatcher(options, execution), UsageError);
+  EXPECT_THROW(StereoMatcher(options, execution()), UsageError);
   options = {};
   options.refinement.cross_check_px = std::nan("");
-  EXPECT_THROW(StereoMatcher(options, execution), UsageError);
+  EXPECT_THROW(StereoMatcher(options, execution()), UsageError);
 }
 
-}  // namespace stereo_matcher_test
-}  // namespace vantage
+}  // namespace vantage::stereo_matcher_test

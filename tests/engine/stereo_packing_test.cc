@@ -1,22 +1,8 @@
 #include "engine/image/stereo_packing.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <utility>
-
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace stereo_packing_test {
-
-using test::noise;
-using test::same;
-using ::testing::HasSubstr;
+namespace vantage::stereo_packing_test {
 
 struct Size {
   int width;
@@ -91,24 +77,22 @@ TYPED_TEST(StereoPackingTest, EveryNameMeansItsPlaces) {
       const int part_height = half && !is_column_pair ? (size.height + 1) / 2 : size.height;
       ASSERT_EQ(packed.width(), is_column_pair ? 2 * part_width : part_width) << name;
       ASSERT_EQ(packed.height(), is_column_pair ? part_height : 2 * part_height) << name;
-      for (int y = 0; y < packed.height(); ++y) {
-        for (int x = 0; x < packed.width(); ++x) {
-          const bool in_second = is_column_pair ? x >= part_width : y >= part_height;
-          const Photograph& source = in_second ? second : first;
-          const int px = is_column_pair ? x % part_width : x;
-          const int py = is_column_pair ? y : y % part_height;
-          for (int c = 0; c < 3; ++c) {
-            double expected = value(source, px, py, c);
-            if (half) {
-              const int xa = is_column_pair ? 2 * px : px;
-              const int ya = is_column_pair ? py : 2 * py;
-              const int xb = is_column_pair ? std::min(xa + 1, size.width - 1) : xa;
-              const int yb = is_column_pair ? ya : std::min(ya + 1, size.height - 1);
-              expected = (value(source, xa, ya, c) + value(source, xb, yb, c)) / 2;
-            }
-            const double error = value(packed, x, y, c) - expected;
-            ASSERT_LE(std::abs(error), kRounding) << name << " " << x << " " << y;
+      for (const auto [x, y] : positions_of(packed)) {
+        const bool in_second = is_column_pair ? x >= part_width : y >= part_height;
+        const Photograph& source = in_second ? second : first;
+        const int px = is_column_pair ? x % part_width : x;
+        const int py = is_column_pair ? y : y % part_height;
+        for (int c = 0; c < 3; ++c) {
+          double expected = value(source, px, py, c);
+          if (half) {
+            const int xa = is_column_pair ? 2 * px : px;
+            const int ya = is_column_pair ? py : 2 * py;
+            const int xb = is_column_pair ? std::min(xa + 1, size.width - 1) : xa;
+            const int yb = is_column_pair ? ya : std::min(ya + 1, size.height - 1);
+            expected = (value(source, xa, ya, c) + value(source, xb, yb, c)) / 2;
           }
+          const double error = value(packed, x, y, c) - expected;
+          ASSERT_LE(std::abs(error), kRounding) << name << " " << x << " " << y;
         }
       }
     }
@@ -145,13 +129,11 @@ std::pair<double, double> limits_of(const Photograph& packed, StereoPacking pack
   std::pair<double, double> limits{1, 0};
   const int width = packing.above_below ? packed.width() : packed.width() / 2;
   const int height = packing.above_below ? packed.height() / 2 : packed.height();
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < packed.channels(); ++c) {
-        const double here =
-            packing.above_below ? value(packed, x, first + y, c) : value(packed, first + x, y, c);
-        limits = {std::min(limits.first, here), std::max(limits.second, here)};
-      }
+  for (const auto [x, y] : positions_of(width, height)) {
+    for (int c = 0; c < packed.channels(); ++c) {
+      const double here =
+          packing.above_below ? value(packed, x, first + y, c) : value(packed, first + x, y, c);
+      limits = {std::min(limits.first, here), std::max(limits.second, here)};
     }
   }
   return limits;
@@ -174,14 +156,12 @@ TYPED_TEST(StereoPackingTest, HalfSizesAreStretchedByCubicInterpolation) {
         ASSERT_EQ(image.height(), size.height);
         const int first = is_right == packing.right_first ? 0 : count;
         const auto [smallest, largest] = limits_of<TypeParam>(packed, packing, first);
-        for (int y = 0; y < size.height; ++y) {
-          for (int x = 0; x < size.width; ++x) {
-            const double at = ((columns ? x : y) + 0.5) / 2 - 0.5;
-            for (int c = 0; c < 3; ++c) {
-              const double expected = cubic(packed, first, count, at, columns, columns ? y : x, c);
-              ASSERT_NEAR(value(image, x, y, c), std::clamp(expected, smallest, largest), kRounding)
-                  << name << " " << x << " " << y;
-            }
+        for (const auto [x, y] : positions_of(size.width, size.height)) {
+          const double at = ((columns ? x : y) + 0.5) / 2 - 0.5;
+          for (int c = 0; c < 3; ++c) {
+            const double expected = cubic(packed, first, count, at, columns, columns ? y : x, c);
+            ASSERT_NEAR(value(image, x, y, c), std::clamp(expected, smallest, largest), kRounding)
+                << name << " " << x << " " << y;
           }
         }
       }
@@ -192,10 +172,8 @@ TYPED_TEST(StereoPackingTest, HalfSizesAreStretchedByCubicInterpolation) {
 TEST(StereoPacking, AHalfSizeRampComesBack) {
   Photograph left{Image<float>(40, 40)};
   auto& pixels = std::get<Image<float>>(left.pixels);
-  for (int y = 0; y < 40; ++y) {
-    for (int x = 0; x < 40; ++x) {
-      pixels.at(x, y) = 0.01F * static_cast<float>(x) + 0.012F * static_cast<float>(y);
-    }
+  for (const auto [x, y] : positions_of(40, 40)) {
+    pixels.at(x, y) = 0.01F * static_cast<float>(x) + 0.012F * static_cast<float>(y);
   }
   for (const char* name : {"sbs2l", "ab2r"}) {
     Photograph packed;
@@ -204,10 +182,8 @@ TEST(StereoPacking, AHalfSizeRampComesBack) {
     Photograph right_again;
     unpack_stereo(packed, packing_of(name), left_again, right_again);
     EXPECT_TRUE(same(left_again, right_again));
-    for (int y = 4; y < 36; ++y) {
-      for (int x = 4; x < 36; ++x) {
-        ASSERT_NEAR(value(left_again, x, y), pixels.at(x, y), 1e-5) << name;
-      }
+    for (const auto [x, y] : positions_of({4, 36}, {4, 36})) {
+      ASSERT_NEAR(value(left_again, x, y), pixels.at(x, y), 1e-5) << name;
     }
   }
 }
@@ -233,7 +209,7 @@ TEST(StereoPacking, RefusesWhatDoesNotFit) {
   Photograph left;
   Photograph right;
   const auto unpack_error = [&](int width, int height, const char* name) {
-    return test::error_of([&] {
+    return error_of([&] {
       unpack_stereo(noise<std::uint8_t>(width, height, 1), packing_of(name), left, right);
     });
   };
@@ -242,10 +218,10 @@ TEST(StereoPacking, RefusesWhatDoesNotFit) {
               HasSubstr("packed image is 4x5, expected an even height"));
   EXPECT_EQ(unpack_error(4, 5, "sbs2r"), "");
   EXPECT_EQ(unpack_error(5, 4, "abl"), "");
-  EXPECT_NE(test::error_of([&] { unpack_stereo(Photograph(), {}, left, right); }), "");
+  EXPECT_NE(error_of([&] { unpack_stereo(Photograph(), {}, left, right); }), "");
   const auto pack_error = [&](const Photograph& other) {
     Photograph packed;
-    return test::error_of([&] { pack_stereo(noise<std::uint8_t>(5, 4, 3), other, {}, packed); });
+    return error_of([&] { pack_stereo(noise<std::uint8_t>(5, 4, 3), other, {}, packed); });
   };
   EXPECT_EQ(pack_error(noise<std::uint8_t>(5, 4, 3)), "");
   EXPECT_EQ(pack_error(noise<std::uint8_t>(4, 4, 3)),
@@ -256,5 +232,4 @@ TEST(StereoPacking, RefusesWhatDoesNotFit) {
   EXPECT_NE(pack_error(noise<std::uint16_t>(5, 4, 3)), "");
 }
 
-}  // namespace stereo_packing_test
-}  // namespace vantage
+}  // namespace vantage::stereo_packing_test

@@ -1,13 +1,10 @@
 #include "engine/io/files/encoded_text.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
 #include <nlohmann/json.hpp>
-#include <random>
-#include <string>
 
-namespace vantage {
-namespace stored_name_test {
+namespace vantage::stored_name_test {
 
 TEST(StoredName, UsualNamesStayAsTheyAre) {
   for (const std::string name : {"", "left/%06d.png", "a b/c.pfm", "J\xc3\xbcrg/\xe5\xb7\xa6.png",
@@ -40,5 +37,4 @@ TEST(StoredName, ComesBackByteForByteThroughJson) {
   }
 }
 
-}  // namespace stored_name_test
-}  // namespace vantage
+}  // namespace vantage::stored_name_test

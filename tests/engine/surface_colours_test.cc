@@ -1,41 +1,19 @@
 #include "engine/synthesis/image_warper.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-#include <random>
-#include <string>
 
-#include "engine/simd.h"
 #include "engine/synthesis/photograph_grid.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "engine/view_geometry/posed_camera.h"
 #include "kernels/photograph_position/photograph_position.h"
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
+#include "tests/engine/every_execution.h"
 
-namespace vantage {
-namespace surface_colours_test {
-
-using test::error_of;
-using test::noise;
-using test::same;
-using testing::HasSubstr;
+namespace vantage::surface_colours_test {
 
 constexpr int kWidth = 240;
 constexpr int kHeight = 180;
-
-Execution& execution() {
-  static Execution instance({.threads = 2});
-  return instance;
-}
 
 Eigen::Matrix3d turn(double x, double y, double z) {
   return (Eigen::AngleAxisd(x, Eigen::Vector3d::UnitX()) *
@@ -158,13 +136,11 @@ struct WallScene : Scene {
       const LensModel lens(index == 0 ? rig.left : rig.right);
       Image<float> photograph(kWidth, kHeight);
       DisparityMap map(kWidth, kHeight);
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          const Eigen::Vector3d seen = camera.rotation * lens.ray_of({x, y})->homogeneous();
-          photograph.at(x, y) = static_cast<float>(wall.look(centre, seen).colour);
-          const Eigen::Vector3d ray = camera.matrix.inverse() * Eigen::Vector3d(x, y, 1);
-          map.at(x, y) = static_cast<float>(wall.disparity_px(wall.look(centre, ray).depth));
-        }
+      for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+        const Eigen::Vector3d seen = camera.rotation * lens.ray_of({x, y})->homogeneous();
+        photograph.at(x, y) = static_cast<float>(wall.look(centre, seen).colour);
+        const Eigen::Vector3d ray = camera.matrix.inverse() * Eigen::Vector3d(x, y, 1);
+        map.at(x, y) = static_cast<float>(wall.disparity_px(wall.look(centre, ray).depth));
       }
       photographs[index].pixels = std::move(photograph);
       (index == 0 ? maps.left.disparity_px : maps.right.disparity_px) = std::move(map);
@@ -181,10 +157,8 @@ struct NoiseScene : Scene {
     photographs = {noise<T>(width, height, channels, 1), noise<T>(width, height, channels, 2)};
     for (DisparityMap* map : {&maps.left.disparity_px, &maps.right.disparity_px}) {
       map->resize(width, height);
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          map->at(x, y) = static_cast<float>((x / 9 + y / 7) % 3 * 4) + 0.3F;
-        }
+      for (const auto [x, y] : positions_of(width, height)) {
+        map->at(x, y) = static_cast<float>((x / 9 + y / 7) % 3 * 4) + 0.3F;
       }
       map->at(width / 2, height / 2) = std::numeric_limits<float>::quiet_NaN();
     }
@@ -194,7 +168,7 @@ struct NoiseScene : Scene {
  private:
   static StereoCalibration random_rig(int width, int height) {
     std::mt19937 random(7);
-    return test::random_calibration(random, width, height, 5, 0.03);
+    return random_calibration(random, width, height, 5, 0.03);
   }
 };
 
@@ -214,20 +188,19 @@ double psnr_db(const SynthesizedView& view, const Image<float>& truth, const Ima
   const auto& image = std::get<Image<float>>(view.image.pixels);
   double sum = 0;
   int count = 0;
-  for (int y = kMargin; y < kHeight - kMargin; ++y) {
-    for (int x = kMargin; x < kWidth - kMargin; ++x) {
-      bool is_smooth = true;
-      for (int j = -kMargin; j <= kMargin; ++j) {
-        for (int i = -kMargin; i <= kMargin; ++i) {
-          is_smooth = is_smooth && std::abs(depth.at(x + i, y + j) - depth.at(x, y)) < 1 &&
-                      view.sources.at(x + i, y + j) == 255;
-        }
+  for (const auto [x, y] :
+       positions_of({kMargin, kWidth - kMargin}, {kMargin, kHeight - kMargin})) {
+    bool is_smooth = true;
+    for (int j = -kMargin; j <= kMargin; ++j) {
+      for (int i = -kMargin; i <= kMargin; ++i) {
+        is_smooth = is_smooth && std::abs(depth.at(x + i, y + j) - depth.at(x, y)) < 1 &&
+                    view.sources.at(x + i, y + j) == 255;
       }
-      if (is_smooth) {
-        const double error = image.at(x, y) - truth.at(x, y);
-        sum += error * error;
-        ++count;
-      }
+    }
+    if (is_smooth) {
+      const double error = image.at(x, y) - truth.at(x, y);
+      sum += error * error;
+      ++count;
     }
   }
   EXPECT_GT(count, kWidth * kHeight / 3);
@@ -258,13 +231,10 @@ TEST(SurfaceColours, OneInterpolationIsNearerToTheTruthThanTwo) {
   for (const Case& one : cases) {
     Image<float> truth(kWidth, kHeight);
     Image<float> depth(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const Wall::Seen seen =
-            wall.look(one.centre, one.ray_from_pixel * Eigen::Vector3d(x, y, 1));
-        truth.at(x, y) = static_cast<float>(seen.colour);
-        depth.at(x, y) = static_cast<float>(seen.depth);
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      const Wall::Seen seen = wall.look(one.centre, one.ray_from_pixel * Eigen::Vector3d(x, y, 1));
+      truth.at(x, y) = static_cast<float>(seen.colour);
+      depth.at(x, y) = static_cast<float>(seen.depth);
     }
     const double once = psnr_db(scene.from_photographs(one.view), truth, depth);
     const double twice = psnr_db(scene.from_rectified(one.view), truth, depth);
@@ -293,13 +263,11 @@ TEST(SurfaceColours, AtACameraTheViewIsTheRectifiedImage) {
             // Half a level of 8 bits; of those themselves, one.
             const double limit = std::max(0.51 / double{kGreyLevelsPerUnit<T>},
                                           std::is_same_v<T, std::uint8_t> ? 1.0 : 0.0);
-            for (int y = 0; y < height; ++y) {
-              for (int x = 0; x < width * image.channels(); ++x) {
-                const double difference =
-                    static_cast<double>(image.row(y)[x]) - static_cast<double>(expected.row(y)[x]);
-                ASSERT_LE(std::abs(difference), limit)
-                    << "camera " << camera << " at " << x << ", " << y;
-              }
+            for (const auto [x, y] : positions_of(width * image.channels(), height)) {
+              const double difference =
+                  static_cast<double>(image.row(y)[x]) - static_cast<double>(expected.row(y)[x]);
+              ASSERT_LE(std::abs(difference), limit)
+                  << "camera " << camera << " at " << x << ", " << y;
             }
           },
           view.image.pixels);
@@ -317,8 +285,8 @@ TEST(SurfaceColours, AreFetchedAtTheRectifiersPositions) {
   constexpr double kPrecision = 1e-3;  // px; the grid is that of a small image, so lenses bend most
   std::mt19937 random(11);
   for (const int coefficients : {0, 5, 8, 14}) {
-    const Rectifier rectifier(test::random_calibration(random, kWidth, kHeight, coefficients),
-                              kWidth, kHeight);
+    const Rectifier rectifier(random_calibration(random, kWidth, kHeight, coefficients), kWidth,
+                              kHeight);
     for (const Side side : {Side::kLeft, Side::kRight}) {
       const PhotographPositions table = rectifier.source_positions(side);
       const kernels::PhotographTable values{.x_px = table.x_px.data(),
@@ -330,8 +298,8 @@ TEST(SurfaceColours, AreFetchedAtTheRectifiersPositions) {
                                             .photograph_height = kHeight};
       double largest = 0;
       for (int i = 0; i < 2000; ++i) {
-        const Eigen::Vector2d place(test::uniform(random, 0, kWidth - 1),
-                                    test::uniform(random, 0, kHeight - 1));
+        const Eigen::Vector2d place(uniform(random, 0, kWidth - 1),
+                                    uniform(random, 0, kHeight - 1));
         auto column = static_cast<std::int32_t>(place.x());
         auto line = static_cast<std::int32_t>(place.y());
         auto fraction_x = static_cast<float>(place.x() - column);
@@ -362,10 +330,8 @@ TEST(SurfaceColours, DoNotMixAcrossOutlines) {
     scene.grid.bring(k == 0 ? Side::kLeft : Side::kRight,
                      (k == 0 ? scene.maps.left.disparity_px : scene.maps.right.disparity_px).view(),
                      scene.photograph_maps[k]);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        photograph.at(x, y) = scene.photograph_maps[k].at(x, y) > 16 ? 1.0F : 0.0F;
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      photograph.at(x, y) = scene.photograph_maps[k].at(x, y) > 16 ? 1.0F : 0.0F;
     }
   }
   SynthesisOptions options;
@@ -377,13 +343,11 @@ TEST(SurfaceColours, DoNotMixAcrossOutlines) {
     const auto& image = std::get<Image<float>>(view.image.pixels);
     int white = 0;
     int mixed = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        constexpr float kRounding = 1e-5F;
-        const float grey = std::min(image.at(x, y), 1 - image.at(x, y));
-        white += image.at(x, y) > 0.5F ? 1 : 0;
-        mixed += grey > kRounding ? 1 : 0;
-      }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      constexpr float kRounding = 1e-5F;
+      const float grey = std::min(image.at(x, y), 1 - image.at(x, y));
+      white += image.at(x, y) > 0.5F ? 1 : 0;
+      mixed += grey > kRounding ? 1 : 0;
     }
     EXPECT_GT(white, 1000);
     EXPECT_EQ(mixed, 0);
@@ -393,32 +357,17 @@ TEST(SurfaceColours, DoNotMixAcrossOutlines) {
 TEST(SurfaceColours, SameBitsForEveryExecutorAndInstructionSet) {
   const NewView turned = [] {
     std::mt19937 random(7);
-    const Rectifier rectifier(test::random_calibration(random, 83, 59, 5, 0.03), 83, 59);
+    const Rectifier rectifier(random_calibration(random, 83, 59, 5, 0.03), 83, 59);
     PosedCamera camera = turned_camera(rectifier.pair());
     camera.translation *= rectifier.pair().baseline;
     return camera_view(rectifier.pair(), camera);
   }();
   for (const NewView& view :
        {baseline_view(0.37, 0, 83, 59), baseline_view(0.6, -0.4, 83, 59), turned}) {
-    Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-    const SynthesizedView expected =
-        NoiseScene<std::uint8_t>(83, 59, 3, serial).from_photographs(view, serial);
-    for (const auto kind : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
-      for (const int threads : {1, 3}) {
-        Execution other({.threads = threads, .executor = kind});
-        EXPECT_TRUE(
-            same(NoiseScene<std::uint8_t>(83, 59, 3, other).from_photographs(view, other).image,
-                 expected.image));
-      }
-    }
-    for (const std::string& isa : available_instruction_sets()) {
-      force_instruction_set(isa);
-      EXPECT_TRUE(
-          same(NoiseScene<std::uint8_t>(83, 59, 3, serial).from_photographs(view, serial).image,
-               expected.image))
-          << isa;
-      force_instruction_set("best");
-    }
+    expect_equal_for_every_execution([&](Execution& execution) {
+      return values_of(
+          NoiseScene<std::uint8_t>(83, 59, 3, execution).from_photographs(view, execution).image);
+    });
   }
 }
 
@@ -440,10 +389,8 @@ TEST(SurfaceColours, OfAPairWithoutLensAreThoseOfTheRectifiedImages) {
     EXPECT_TRUE(same({once.holes.copy()}, {twice.holes.copy()}));
     const auto& a = std::get<Image<std::uint8_t>>(once.image.pixels);
     const auto& b = std::get<Image<std::uint8_t>>(twice.image.pixels);
-    for (int y = 0; y < 59; ++y) {
-      for (int x = 0; x < 81 * 3; ++x) {
-        ASSERT_NEAR(a.row(y)[x], b.row(y)[x], 1) << x << ", " << y;
-      }
+    for (const auto [x, y] : positions_of(81 * 3, 59)) {
+      ASSERT_NEAR(a.row(y)[x], b.row(y)[x], 1) << x << ", " << y;
     }
   }
 }
@@ -480,5 +427,4 @@ TEST(SurfaceColours, RefuseTheBooksWarpAndGeometryOfAnotherSize) {
               HasSubstr("is 39×30, expected 40×30"));
 }
 
-}  // namespace surface_colours_test
-}  // namespace vantage
+}  // namespace vantage::surface_colours_test

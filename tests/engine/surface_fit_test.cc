@@ -1,23 +1,9 @@
 #include "engine/refinement/surface_fit.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "engine/refinement/refine_maps.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace surface_fit_test {
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+namespace vantage::surface_fit_test {
 
 /// The search range of all maps in this file.
 constexpr DisparityRange kSearch{-40, 60};
@@ -35,45 +21,38 @@ struct SteppedMap {
 SteppedMap stepped_map(int width, int height) {
   std::mt19937 random(61);
   SteppedMap result{DisparityMap(width, height), Mask(width, height)};
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const bool is_unmatched = random() % 5 == 0;
-      const float stray = random() % 2 == 0 ? kUnknown : std::round(plane(x, y)) + 1;
-      result.map.at(x, y) = is_unmatched ? stray : std::round(plane(x, y));
-      result.unmatched.at(x, y) = is_unmatched ? 255 : 0;
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    const bool is_unmatched = random() % 5 == 0;
+    const float stray = random() % 2 == 0 ? kUnknown : std::round(plane(x, y)) + 1;
+    result.map.at(x, y) = is_unmatched ? stray : std::round(plane(x, y));
+    result.unmatched.at(x, y) = is_unmatched ? 255 : 0;
   }
   return result;
 }
 
 TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
-  Execution execution({.threads = 2});
   SurfaceFitWork work;
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 23}, {31, 1}, {53, 41}}) {
     for (const auto& [radius, step] : {std::pair{1, 1}, {7, 1}, {16, 1}, {1, 2}, {10, 2}}) {
       SteppedMap stepped = stepped_map(width, height);
       const DisparityMap before = stepped.map.copy();
-      fit_surface(stepped.unmatched, radius, step, kSearch, execution, work, stepped.map);
+      fit_surface(stepped.unmatched, radius, step, kSearch, execution(), work, stepped.map);
       // The same with all unmatched pixels unknown: their values have no say.
       SteppedMap unknown{before.copy(), std::move(stepped.unmatched)};
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          if (unknown.unmatched.at(x, y) != 0) {
-            unknown.map.at(x, y) = kUnknown;
-          }
+      for (const auto [x, y] : positions_of(width, height)) {
+        if (unknown.unmatched.at(x, y) != 0) {
+          unknown.map.at(x, y) = kUnknown;
         }
       }
-      fit_surface(unknown.unmatched, radius, step, kSearch, execution, work, unknown.map);
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          if (unknown.unmatched.at(x, y) == 0) {
-            ASSERT_EQ(stepped.map.at(x, y), unknown.map.at(x, y)) << x << ", " << y;
-            ASSERT_LT(std::abs(stepped.map.at(x, y) - plane(x, y)), 0.75);
-          } else if (std::isnan(before.at(x, y))) {
-            ASSERT_TRUE(std::isnan(stepped.map.at(x, y)));
-          } else {
-            ASSERT_EQ(stepped.map.at(x, y), before.at(x, y));
-          }
+      fit_surface(unknown.unmatched, radius, step, kSearch, execution(), work, unknown.map);
+      for (const auto [x, y] : positions_of(width, height)) {
+        if (unknown.unmatched.at(x, y) == 0) {
+          ASSERT_EQ(stepped.map.at(x, y), unknown.map.at(x, y)) << x << ", " << y;
+          ASSERT_LT(std::abs(stepped.map.at(x, y) - plane(x, y)), 0.75);
+        } else if (std::isnan(before.at(x, y))) {
+          ASSERT_TRUE(std::isnan(stepped.map.at(x, y)));
+        } else {
+          ASSERT_EQ(stepped.map.at(x, y), before.at(x, y));
         }
       }
     }
@@ -81,7 +60,6 @@ TEST(FitSurface, OnlyMatchedPixelsCountAndChange) {
 }
 
 TEST(FitSurface, TilesHaveTheValuesOfAWholeFit) {
-  Execution execution({.threads = 2});
   SurfaceFitWork work;
   const SteppedMap stepped = stepped_map(53, 41);
   TileMask tiles(53, 41, false, 8);
@@ -91,15 +69,13 @@ TEST(FitSurface, TilesHaveTheValuesOfAWholeFit) {
   }
   for (const int step : {1, 2}) {
     DisparityMap whole = stepped.map.copy();
-    fit_surface(stepped.unmatched, 10, step, kSearch, execution, work, whole);
+    fit_surface(stepped.unmatched, 10, step, kSearch, execution(), work, whole);
     DisparityMap parts = stepped.map.copy();
-    fit_surface(stepped.unmatched, 10, step, kSearch, execution, work, parts, &tiles);
-    for (int y = 0; y < 41; ++y) {
-      for (int x = 0; x < 53; ++x) {
-        const float expected = tiles.at(x / 8, y / 8) ? whole.at(x, y) : stepped.map.at(x, y);
-        if (!std::isnan(expected)) {
-          ASSERT_EQ(parts.at(x, y), expected) << x << ", " << y << ", step " << step;
-        }
+    fit_surface(stepped.unmatched, 10, step, kSearch, execution(), work, parts, &tiles);
+    for (const auto [x, y] : positions_of(53, 41)) {
+      const float expected = tiles.at(x / 8, y / 8) ? whole.at(x, y) : stepped.map.at(x, y);
+      if (!std::isnan(expected)) {
+        ASSERT_EQ(parts.at(x, y), expected) << x << ", " << y << ", step " << step;
       }
     }
   }
@@ -107,29 +83,24 @@ TEST(FitSurface, TilesHaveTheValuesOfAWholeFit) {
 
 TEST(FitSurface, ValuesStayWithinTheSearch) {
   // Winners at the ends of the search stand for half a pixel beyond them, where the plane goes on.
-  Execution execution({.threads = 2});
   SurfaceFitWork work;
   const DisparityRange search{5, 9};
   SteppedMap stepped = stepped_map(61, 43);
-  for (int y = 0; y < 43; ++y) {
-    for (int x = 0; x < 61; ++x) {
-      if (stepped.map.at(x, y) < 5 || stepped.map.at(x, y) > 9) {
-        stepped.unmatched.at(x, y) = 255;
-      }
+  for (const auto [x, y] : positions_of(61, 43)) {
+    if (stepped.map.at(x, y) < 5 || stepped.map.at(x, y) > 9) {
+      stepped.unmatched.at(x, y) = 255;
     }
   }
   DisparityMap free = stepped.map.copy();
-  fit_surface(stepped.unmatched, 10, 1, kSearch, execution, work, free);
-  fit_surface(stepped.unmatched, 10, 1, search, execution, work, stepped.map);
+  fit_surface(stepped.unmatched, 10, 1, kSearch, execution(), work, free);
+  fit_surface(stepped.unmatched, 10, 1, search, execution(), work, stepped.map);
   int outside = 0;
-  for (int y = 0; y < 43; ++y) {
-    for (int x = 0; x < 61; ++x) {
-      if (stepped.unmatched.at(x, y) == 0) {
-        outside += free.at(x, y) < 5 || free.at(x, y) > 9 ? 1 : 0;
-        // But for the last bits: samples are stored relative to the middle of the search.
-        ASSERT_NEAR(stepped.map.at(x, y), std::clamp(free.at(x, y), 5.0F, 9.0F), 1e-5)
-            << x << ", " << y;
-      }
+  for (const auto [x, y] : positions_of(61, 43)) {
+    if (stepped.unmatched.at(x, y) == 0) {
+      outside += free.at(x, y) < 5 || free.at(x, y) > 9 ? 1 : 0;
+      // But for the last bits: samples are stored relative to the middle of the search.
+      ASSERT_NEAR(stepped.map.at(x, y), std::clamp(free.at(x, y), 5.0F, 9.0F), 1e-5)
+          << x << ", " << y;
     }
   }
   EXPECT_GT(outside, 20);
@@ -142,44 +113,31 @@ TEST(FitSurface, ExecutionsAgree) {
     DisparityMap serial = stepped.map.copy();
     Execution one({.executor = scheduler::ExecutorKind::kSerial});
     fit_surface(stepped.unmatched, 10, step, kSearch, one, work, serial);
-    EXPECT_FALSE(test::identical(serial, stepped.map));
+    EXPECT_FALSE(identical(serial, stepped.map));
     Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
     fit_surface(stepped.unmatched, 10, step, kSearch, three, work, stepped.map);
-    EXPECT_TRUE(test::identical(serial, stepped.map)) << step;
+    EXPECT_TRUE(identical(serial, stepped.map)) << step;
   }
 }
 
 TEST(FitSurface, RefinementFitsBothComponentsBeforeItFills) {
-  Execution execution({.threads = 2});
   RefinementWork work;
   SteppedMap stepped = stepped_map(40, 30);
-  for (int y = 0; y < 30; ++y) {
-    for (int x = 0; x < 40; ++x) {
-      stepped.map.at(x, y) = stepped.unmatched.at(x, y) != 0 ? kUnknown : stepped.map.at(x, y);
-    }
+  for (const auto [x, y] : positions_of(40, 30)) {
+    stepped.map.at(x, y) = stepped.unmatched.at(x, y) != 0 ? kUnknown : stepped.map.at(x, y);
   }
   MatchedMap matched{.disparity_px = stepped.map.copy(), .disparity_y_px = stepped.map.copy()};
   const MapToRefine map{
       .side = Side::kLeft, .map = &matched, .search = kSearch, .search_y = kSearch};
   std::vector<std::string> steps;
-  refine_maps({.edge_snapping_px = 0,
-               .cross_check = false,
-               .cross_check_px = 1,
-               .cross_check_level = 0,
-               .confidence_threshold = -std::numeric_limits<double>::infinity(),
-               .speckle_size_px = 0,
-               .surface_fit_px = 6,
-               .surface_fit_step_px = 1,
-               .fill = Fill::kConstant},
-              map, nullptr, execution, work,
+  refine_maps({.cross_check = false, .surface_fit_px = 6}, map, nullptr, execution(), work,
               [&](std::string_view step) { steps.emplace_back(step); });
   EXPECT_THAT(steps, ::testing::ElementsAre("surface fit", "fill"));
   SurfaceFitWork alone;
-  fit_surface(stepped.unmatched, 6, 1, kSearch, execution, alone, stepped.map);
-  fill_unmatched(stepped.unmatched, Side::kLeft, Fill::kConstant, execution, stepped.map);
-  EXPECT_TRUE(test::identical(matched.disparity_px, stepped.map));
-  EXPECT_TRUE(test::identical(matched.disparity_y_px, stepped.map));
+  fit_surface(stepped.unmatched, 6, 1, kSearch, execution(), alone, stepped.map);
+  fill_unmatched(stepped.unmatched, Side::kLeft, Fill::kConstant, execution(), stepped.map);
+  EXPECT_TRUE(identical(matched.disparity_px, stepped.map));
+  EXPECT_TRUE(identical(matched.disparity_y_px, stepped.map));
 }
 
-}  // namespace surface_fit_test
-}  // namespace vantage
+}  // namespace vantage::surface_fit_test

@@ -1,46 +1,17 @@
 // Selection in symmetric disparity space (§3.17): both maps are of one solution, whichever image is
 // which.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <variant>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/generation/book_pairs.h"
 #include "engine/matching/stereo_matcher.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/method_cases.h"
 #include "tests/engine/option_complaint.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace symmetric_selection_test {
-
-using test::complaint;
-
-using test::identical;
-using test::PhotographPair;
-using test::PixelKind;
-using test::textured_pair;
-using testing::HasSubstr;
+namespace vantage::symmetric_selection_test {
 
 constexpr int kWidth = 56;  // whole blocks on every level, which mirrored images share
 constexpr int kHeight = 17;
-
-DisparityMaps maps_of(const PhotographPair& pair, const MatchOptions& options,
-                      const ExecutionOptions& how = {.threads = 1},
-                      const MatchRequest& request = {.confidence = true}) {
-  Execution execution(how);
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(pair.left, pair.right, request, maps);
-  return maps;
-}
 
 Photograph mirrored(const Photograph& photograph) {
   const auto& grey = std::get<Image<std::uint8_t>>(photograph.pixels);
@@ -55,8 +26,8 @@ bool is_equal(float a, float b) { return a == b || (std::isnan(a) && std::isnan(
 
 class SymmetricSelection : public ::testing::TestWithParam<int> {
  protected:
-  static const test::MethodCase& method() {
-    static const auto cases = test::method_cases({-3, 14});
+  static const MethodCase& method() {
+    static const auto cases = method_cases({-3, 14});
     return cases[static_cast<std::size_t>(GetParam())];
   }
   static MatchOptions options() {
@@ -120,19 +91,17 @@ TEST_P(SymmetricSelection, ExchangedImagesGiveExchangedMaps) {
       parameters.aggregation == Aggregation::kNone ||
       parameters.prior_smoothing == PriorSmoothing::kMaximum;
   int different = 0;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const int other = kWidth - 1 - x;
-      for (const auto& [one, two] :
-           {std::pair(&maps.left, &exchanged.right), std::pair(&maps.right, &exchanged.left)}) {
-        const float a = one->disparity_px.at(x, y);
-        const float b = two->disparity_px.at(other, y);
-        if (is_exact) {
-          EXPECT_TRUE(is_equal(a, b)) << x << ", " << y << ": " << a << " and " << b;
-          EXPECT_TRUE(is_equal(one->confidence.at(x, y), two->confidence.at(other, y)));
-        }
-        different += std::isnan(a) != std::isnan(b) || std::abs(a - b) > 0.01F ? 1 : 0;
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    const int other = kWidth - 1 - x;
+    for (const auto& [one, two] :
+         {std::pair(&maps.left, &exchanged.right), std::pair(&maps.right, &exchanged.left)}) {
+      const float a = one->disparity_px.at(x, y);
+      const float b = two->disparity_px.at(other, y);
+      if (is_exact) {
+        EXPECT_TRUE(is_equal(a, b)) << x << ", " << y << ": " << a << " and " << b;
+        EXPECT_TRUE(is_equal(one->confidence.at(x, y), two->confidence.at(other, y)));
       }
+      different += std::isnan(a) != std::isnan(b) || std::abs(a - b) > 0.01F ? 1 : 0;
     }
   }
   EXPECT_LE(different, 2 * kWidth * kHeight / 100);
@@ -153,19 +122,16 @@ TEST_P(SymmetricSelection, DoesNotDependOnThePlanOrTheRequest) {
       expected));
   const DisparityMaps alone =
       maps_of(pair, options, {.threads = 2}, {.left = false, .confidence = true});
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      EXPECT_TRUE(
-          is_equal(alone.right.disparity_px.at(x, y), expected.right.disparity_px.at(x, y)));
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    EXPECT_TRUE(is_equal(alone.right.disparity_px.at(x, y), expected.right.disparity_px.at(x, y)));
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Methods, SymmetricSelection,
-    ::testing::Range(0, static_cast<int>(test::method_cases({}).size())), [](const auto& instance) {
-      return test::method_cases({})[static_cast<std::size_t>(instance.param)].name;
-    });
+INSTANTIATE_TEST_SUITE_P(Methods, SymmetricSelection,
+                         ::testing::Range(0, static_cast<int>(method_cases({}).size())),
+                         [](const auto& instance) {
+                           return method_cases({})[static_cast<std::size_t>(instance.param)].name;
+                         });
 
 /// Without noise a texture without repetition is found again.
 TEST(SymmetricSelectionOfBookPairs, IsExactWithoutNoise) {
@@ -185,14 +151,12 @@ TEST(SymmetricSelectionOfBookPairs, IsExactWithoutNoise) {
   int occluded = 0;
   int matched = 0;
   const auto check = [&](const MatchedMap& map, const DisparityMap& truth, const Mask& mask) {
-    for (int y = 0; y < truth.height(); ++y) {
-      for (int x = 0; x < truth.width(); ++x) {
-        if (mask.at(x, y) == 0) {
-          ASSERT_EQ(map.disparity_px.at(x, y), truth.at(x, y)) << x << ", " << y;
-        } else {
-          ++occluded;
-          matched += map.unmatched.at(x, y) == 0 ? 1 : 0;
-        }
+    for (const auto [x, y] : positions_of(truth)) {
+      if (mask.at(x, y) == 0) {
+        ASSERT_EQ(map.disparity_px.at(x, y), truth.at(x, y)) << x << ", " << y;
+      } else {
+        ++occluded;
+        matched += map.unmatched.at(x, y) == 0 ? 1 : 0;
       }
     }
   };
@@ -211,12 +175,10 @@ TEST(SymmetricSelectionMaps, AreFilledWhereUnmatched) {
   const DisparityMaps filled = maps_of(pair, options);
   options.raw = true;
   const DisparityMaps raw = maps_of(pair, options);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      EXPECT_FALSE(std::isnan(filled.left.disparity_px.at(x, y)));
-      EXPECT_EQ(filled.left.unmatched.at(x, y), raw.left.unmatched.at(x, y));
-      EXPECT_EQ(filled.right.unmatched.at(x, y), raw.right.unmatched.at(x, y));
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    EXPECT_FALSE(std::isnan(filled.left.disparity_px.at(x, y)));
+    EXPECT_EQ(filled.left.unmatched.at(x, y), raw.left.unmatched.at(x, y));
+    EXPECT_EQ(filled.right.unmatched.at(x, y), raw.right.unmatched.at(x, y));
   }
 }
 
@@ -245,14 +207,12 @@ TEST(SymmetricSelectionOptions, AreCheckedTogether) {
   options.disparities_y = DisparityRange{-1, 1};
   EXPECT_THAT(complaint(options), HasSubstr("selection is symmetric, expected winner"));
   options.disparities_y.reset();
-  Execution execution({.threads = 1});
   options.disparities = {0, 5};
-  const StereoMatcher matcher(options, execution);
+  const StereoMatcher matcher(options, execution());
   const auto pair = textured_pair(kWidth, kHeight, {0, 5}, PixelKind::kGrey8, 25);
   const std::vector<OtherView> others = {{&pair.right, 1}, {&pair.left, 2}};
   DisparityMaps maps;
   EXPECT_THROW(matcher.match_several(pair.left, others, {}, maps), UsageError);
 }
 
-}  // namespace symmetric_selection_test
-}  // namespace vantage
+}  // namespace vantage::symmetric_selection_test

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <vector>
-
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/costs/cost_table.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// The keys of a table's entries for which `holds`.
 template <typename Table, typename Holds>
@@ -26,4 +25,4 @@ inline std::vector<Aggregation> all_aggregations() {
   return keys_in(aggregation_table(), [](const CellAggregation&) { return true; });
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,20 +1,10 @@
 #include "engine/sequence/temporal_state.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <random>
-
-#include "engine/error.h"
 #include "engine/generation/portable_random.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 
-namespace vantage {
-namespace temporal_state_test {
-
-using test::PixelKind;
-using test::textured_pair;
+namespace vantage::temporal_state_test {
 
 constexpr int kWidth = 67;
 constexpr int kHeight = 35;
@@ -32,13 +22,11 @@ DisparityMaps some_maps(int width = kWidth, int height = kHeight) {
   for (Mask* mask : {&maps.left.unmatched, &maps.right.unmatched}) {
     mask->resize(width, height);
   }
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      maps.left.disparity_px.at(x, y) = static_cast<float>(x) + 0.25F;
-      maps.right.disparity_px.at(x, y) = static_cast<float>(y) + 0.5F;
-      maps.left.unmatched.at(x, y) = (x + y) % 7 == 0 ? 255 : 0;
-      maps.right.unmatched.at(x, y) = (x + 2 * y) % 5 == 0 ? 255 : 0;
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    maps.left.disparity_px.at(x, y) = static_cast<float>(x) + 0.25F;
+    maps.right.disparity_px.at(x, y) = static_cast<float>(y) + 0.5F;
+    maps.left.unmatched.at(x, y) = (x + y) % 7 == 0 ? 255 : 0;
+    maps.right.unmatched.at(x, y) = (x + 2 * y) % 5 == 0 ? 255 : 0;
   }
   return maps;
 }
@@ -68,19 +56,17 @@ TEST_F(TemporalStateTest, HandsOnMatchedPixelsOfWhatDidNotChange) {
   EXPECT_EQ(prior.weight, 0.5);
   ASSERT_FALSE(prior.left_px.empty());
   ASSERT_FALSE(prior.right_px.empty());
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const bool left_changed = std::abs(x - 30) <= 2 && std::abs(y - 20) <= 2;
-      if (left_changed || maps_.left.unmatched.at(x, y) != 0) {
-        ASSERT_TRUE(std::isnan(prior.left_px.at(x, y))) << x << ", " << y;
-      } else {
-        ASSERT_EQ(prior.left_px.at(x, y), maps_.left.disparity_px.at(x, y)) << x << ", " << y;
-      }
-      if (maps_.right.unmatched.at(x, y) != 0) {
-        ASSERT_TRUE(std::isnan(prior.right_px.at(x, y)));
-      } else {
-        ASSERT_EQ(prior.right_px.at(x, y), maps_.right.disparity_px.at(x, y));
-      }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    const bool left_changed = std::abs(x - 30) <= 2 && std::abs(y - 20) <= 2;
+    if (left_changed || maps_.left.unmatched.at(x, y) != 0) {
+      ASSERT_TRUE(std::isnan(prior.left_px.at(x, y))) << x << ", " << y;
+    } else {
+      ASSERT_EQ(prior.left_px.at(x, y), maps_.left.disparity_px.at(x, y)) << x << ", " << y;
+    }
+    if (maps_.right.unmatched.at(x, y) != 0) {
+      ASSERT_TRUE(std::isnan(prior.right_px.at(x, y)));
+    } else {
+      ASSERT_EQ(prior.right_px.at(x, y), maps_.right.disparity_px.at(x, y));
     }
   }
 }
@@ -88,10 +74,8 @@ TEST_F(TemporalStateTest, HandsOnMatchedPixelsOfWhatDidNotChange) {
 TEST_F(TemporalStateTest, ComparesWithTheFrameJustBefore) {
   Photograph brighter = copy_of(left_);
   auto& levels = std::get<Image<std::uint8_t>>(brighter.pixels);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      levels.at(x, y) = static_cast<std::uint8_t>(levels.at(x, y) ^ 64U);
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    levels.at(x, y) = static_cast<std::uint8_t>(levels.at(x, y) ^ 64U);
   }
   state_.remember(left_, right_, maps_, execution_);
   EXPECT_TRUE(state_.priors_for(brighter, right_, execution_).left_px.empty()) << "a cut";
@@ -157,8 +141,7 @@ double mean_change_px(MatchMethod method, double weight) {
   MatchOptions options;
   options.method = method;
   options.disparities = {0, 15};
-  Execution execution({.threads = 2});
-  const StereoMatcher matcher(options, execution);
+  const StereoMatcher matcher(options, execution());
   TemporalState state({.weight = weight});
   DisparityMaps maps;
   DisparityMap before;
@@ -168,17 +151,15 @@ double mean_change_px(MatchMethod method, double weight) {
     PortableRandom random(7, static_cast<std::uint64_t>(frame));
     for (Photograph& photograph : noisy) {
       auto& image = std::get<Image<std::uint8_t>>(photograph.pixels);
-      for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) {
-          // Little contrast, much noise.
-          image.at(x, y) = static_cast<std::uint8_t>(
-              std::lround(image.at(x, y) / 16 + 100 + 1.5 * random.normal()));
-        }
+      for (const auto [x, y] : positions_of(image)) {
+        // Little contrast, much noise.
+        image.at(x, y) = static_cast<std::uint8_t>(
+            std::lround(image.at(x, y) / 16 + 100 + 1.5 * random.normal()));
       }
     }
-    const MatchRequest request{.prior = state.priors_for(noisy[0], noisy[1], execution)};
+    const MatchRequest request{.prior = state.priors_for(noisy[0], noisy[1], execution())};
     matcher.match(noisy[0], noisy[1], request, maps);
-    state.remember(noisy[0], noisy[1], maps, execution);
+    state.remember(noisy[0], noisy[1], maps, execution());
     for (int y = 0; frame > 0 && y < 60; ++y) {
       for (int x = 20; x < 70; ++x) {
         change += std::abs(maps.left.disparity_px.at(x, y) - before.at(x, y));
@@ -199,5 +180,4 @@ TEST(TemporalPrior, KeepsAStillNoisySceneSteady) {
   }
 }
 
-}  // namespace temporal_state_test
-}  // namespace vantage
+}  // namespace vantage::temporal_state_test

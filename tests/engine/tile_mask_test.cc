@@ -1,19 +1,13 @@
 #include "engine/image/tile_mask.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <random>
-#include <vector>
-
-namespace vantage {
-namespace tile_mask_test {
+namespace vantage::tile_mask_test {
 
 TileMask random_mask(int width, int height, int side_px, std::mt19937& random) {
   TileMask mask(width, height, false, side_px);
-  for (int row = 0; row < mask.rows(); ++row) {
-    for (int column = 0; column < mask.columns(); ++column) {
-      mask.set(column, row, random() % 3 != 0);
-    }
+  for (const auto [column, row] : positions_of(mask.columns(), mask.rows())) {
+    mask.set(column, row, random() % 3 != 0);
   }
   return mask;
 }
@@ -25,17 +19,14 @@ TEST(TileMask, RegionsCoverTheTilesOnce) {
       const TileMask mask = random_mask(extent.columns, extent.rows, side_px, random);
       std::vector<int> visits(static_cast<std::size_t>(extent.columns * extent.rows));
       for (const scheduler::Region& region : mask.regions()) {
-        for (int y = region.rows.begin; y < region.rows.end; ++y) {
-          for (int x = region.columns.begin; x < region.columns.end; ++x) {
-            ++visits[static_cast<std::size_t>(y * extent.columns + x)];
-          }
+        for (const auto [x, y] : positions_of({region.columns.begin, region.columns.end},
+                                              {region.rows.begin, region.rows.end})) {
+          ++visits[static_cast<std::size_t>(y * extent.columns + x)];
         }
       }
-      for (int y = 0; y < extent.rows; ++y) {
-        for (int x = 0; x < extent.columns; ++x) {
-          EXPECT_EQ(visits[static_cast<std::size_t>(y * extent.columns + x)],
-                    mask.at(x / side_px, y / side_px) ? 1 : 0);
-        }
+      for (const auto [x, y] : positions_of(extent.columns, extent.rows)) {
+        EXPECT_EQ(visits[static_cast<std::size_t>(y * extent.columns + x)],
+                  mask.at(x / side_px, y / side_px) ? 1 : 0);
       }
     }
   }
@@ -50,10 +41,8 @@ TEST(TileMask, TilesWithinLargerOnesAreThoseInBoth) {
   const TileMask mask = random_mask(67, 45, 8, random);
   const TileMask others = random_mask(67, 45, 32, random);
   const TileMask within = mask.within(others);
-  for (int y = 0; y < 45; ++y) {
-    for (int x = 0; x < 67; ++x) {
-      EXPECT_EQ(within.at(x / 8, y / 8), mask.at(x / 8, y / 8) && others.at(x / 32, y / 32));
-    }
+  for (const auto [x, y] : positions_of(67, 45)) {
+    EXPECT_EQ(within.at(x / 8, y / 8), mask.at(x / 8, y / 8) && others.at(x / 32, y / 32));
   }
 }
 
@@ -64,23 +53,17 @@ TEST(TileMask, WidenedTilesAreThoseWithPixelsWithinTheMargin) {
   const scheduler::Extent coarse{34, 23};
   for (const int margin : {0, 3}) {
     const TileMask widened = mask.widened(coarse, px_per_column, margin, 4);
-    for (int row = 0; row < widened.rows(); ++row) {
-      for (int column = 0; column < widened.columns(); ++column) {
-        const scheduler::Region tile = widened.pixels(column, row);
-        bool is_near = false;
-        for (int y = 0; y < 45; ++y) {
-          for (int x = 0; x < 67; ++x) {
-            is_near =
-                is_near || (mask.at(x / 16, y / 16) && x / 2 >= tile.columns.begin - margin &&
-                            x / 2 < tile.columns.end + margin &&
-                            y / 2 >= tile.rows.begin - margin && y / 2 < tile.rows.end + margin);
-          }
-        }
-        EXPECT_EQ(widened.at(column, row), is_near) << column << ", " << row;
+    for (const auto [column, row] : positions_of(widened.columns(), widened.rows())) {
+      const scheduler::Region tile = widened.pixels(column, row);
+      bool is_near = false;
+      for (const auto [x, y] : positions_of(67, 45)) {
+        is_near = is_near || (mask.at(x / 16, y / 16) && x / 2 >= tile.columns.begin - margin &&
+                              x / 2 < tile.columns.end + margin &&
+                              y / 2 >= tile.rows.begin - margin && y / 2 < tile.rows.end + margin);
       }
+      EXPECT_EQ(widened.at(column, row), is_near) << column << ", " << row;
     }
   }
 }
 
-}  // namespace tile_mask_test
-}  // namespace vantage
+}  // namespace vantage::tile_mask_test

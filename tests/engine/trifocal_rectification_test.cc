@@ -1,21 +1,11 @@
 #include "engine/view_geometry/trifocal_rectification.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <array>
-#include <cmath>
-#include <random>
 
 #include "tests/engine/calibration_cases.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace trifocal_rectification_test {
-
-using test::error_of;
-using test::random_rotation;
-using test::uniform;
+namespace vantage::trifocal_rectification_test {
 
 // A camera at `centre` that looks along the reference frame's Z but for a small turn.
 PosedCamera camera_at(std::mt19937& random, const Eigen::Vector3d& centre, double turn) {
@@ -62,8 +52,7 @@ TEST(TrifocalRectification, DisparityTimesPositionMovesPixels) {
     try {
       rig = trifocal_rectification(cameras[0], cameras[1], cameras[2]);
     } catch (const Error& error) {  // the plane may come to lie badly
-      EXPECT_NE(std::string(error.what()).find("plane through the three cameras"),
-                std::string::npos);
+      EXPECT_THAT(std::string(error.what()), HasSubstr("plane through the three cameras"));
       continue;
     }
     if (trial % 4 == 0) {
@@ -158,5 +147,4 @@ TEST(TrifocalRectification, NamesWhatIsWrong) {
             std::string::npos);
 }
 
-}  // namespace trifocal_rectification_test
-}  // namespace vantage
+}  // namespace vantage::trifocal_rectification_test

@@ -1,32 +1,9 @@
 #include "engine/synthesis/triple_warper.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <random>
-#include <utility>
-#include <vector>
-
 #include "engine/synthesis/view_synthesizer.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace triple_warper_test {
-
-using test::error_of;
-using test::noise;
-using test::same;
-using testing::HasSubstr;
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-Execution& threads() {
-  static Execution execution({.threads = 2});
-  return execution;
-}
+namespace vantage::triple_warper_test {
 
 ViewWarp translation(double x, double y) {
   ViewWarp warp;
@@ -55,7 +32,6 @@ DisparityMap constant_map(int width, int height, float value) {
 
 template <typename T>
 class Triple : public testing::Test {};
-using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(Triple, PixelTypes);
 
 // Whichever of the three shows nothing, the others make the view as a pair does.
@@ -66,7 +42,7 @@ TYPED_TEST(Triple, WithoutOneImageIsThePairOfTheOthers) {
   options.gamma.reset();
   options.match_intensities = false;
   options.soft_edges = false;
-  const ViewSynthesizer synthesizer(options, threads());
+  const ViewSynthesizer synthesizer(options, execution());
   for (const auto& [width, height] : kSizes) {
     for (const int channels : {1, 3, 4}) {
       const Photograph first = noise<TypeParam>(width, height, channels, 1);
@@ -135,7 +111,7 @@ int centre_of(const std::vector<Plane>& planes, std::array<double, 3> weights,
     triple.disparity_px[k] = planes[k].disparity_px.view();
   }
   SynthesizedView result;
-  ViewSynthesizer({}, threads()).synthesize(triple, view, result, fit);
+  ViewSynthesizer({}, execution()).synthesize(triple, view, result, fit);
   return std::get<Image<std::uint8_t>>(result.image.pixels).at(2, 2);
 }
 
@@ -187,5 +163,4 @@ TEST(TripleView, RefusesImagesThatDoNotGoTogether) {
   EXPECT_THAT(error_of([&] { centre_of(planes, {1, 0, 0}); }), HasSubstr("5×3, expected 5×4"));
 }
 
-}  // namespace triple_warper_test
-}  // namespace vantage
+}  // namespace vantage::triple_warper_test

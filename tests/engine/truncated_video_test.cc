@@ -1,34 +1,12 @@
 // Video files that end too early.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "engine/io/video/video_io.h"
 #include "engine/io/video/video_join.h"
 #include "engine/io/video/video_structure.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 
-namespace vantage {
-namespace truncated_video_test {
-
-using test::bytes_of;
-using test::error_of;
-using test::number_of_frame;
-using test::put_bytes;
-using test::put_closed_groups_video;
-using test::put_numbered_video;
-using test::put_open_groups_video;
-using test::put_raw_video;
-using test::RawVideo;
-using test::remux_video;
-using test::video_packets;
-using test::VideoPacket;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+namespace vantage::truncated_video_test {
 
 constexpr FrameRate kRate{10, 1};
 
@@ -106,7 +84,7 @@ TEST(TruncatedVideo, OfRawVideoToo) {
     }
     // Nothing tells that there were more.
     put_bytes(folder / "cut.y4m", first_bytes(whole, end));
-    EXPECT_EQ(test::frame_numbers(folder / "cut.y4m").size(), static_cast<std::size_t>(frames));
+    EXPECT_EQ(frame_numbers(folder / "cut.y4m").size(), static_cast<std::size_t>(frames));
   }
 }
 
@@ -120,7 +98,7 @@ TEST(TruncatedVideo, AllFramesAreThereWhereOnlyWhatFollowsThemIsCutOff) {
   put_bytes(folder / "b.mkv", first_bytes(whole, static_cast<std::int64_t>(whole.size()) - 1));
   EXPECT_EQ(find_video_extent(folder / "b.mkv"), VideoExtent::kWhole);
   EXPECT_EQ(VideoReader(folder / "b.mkv").frame_count(), 12);
-  EXPECT_EQ(test::frame_numbers(folder / "b.mkv").size(), 12U);
+  EXPECT_EQ(frame_numbers(folder / "b.mkv").size(), 12U);
   put_bytes(folder / "b.mkv", first_bytes(whole, static_cast<std::int64_t>(whole.size()) / 2));
   EXPECT_EQ(find_video_extent(folder / "b.mkv"), VideoExtent::kCutOff);
   EXPECT_THAT(error_of([&] { check_video_is_whole(folder / "b.mkv"); }), HasSubstr("truncated"));
@@ -135,7 +113,7 @@ TEST(TruncatedVideo, AviTellsByItsChunks) {
   const std::string whole =
       std::string("RIFF") + static_cast<char>(contents.size()) + std::string(3, '\0') + contents;
   for (std::size_t size = 12; size <= whole.size(); ++size) {
-    test::put_text(folder / "a.avi", whole.substr(0, size));
+    put_text(folder / "a.avi", whole.substr(0, size));
     EXPECT_EQ(find_video_extent(folder / "a.avi"),
               size + index.size() < whole.size() ? VideoExtent::kCutOff : VideoExtent::kWhole)
         << size;
@@ -147,7 +125,7 @@ TEST(TruncatedVideo, TransportStreamsTellByPacketsAndByFramesThatWereToCome) {
   const TemporaryFolder folder;
   put_closed_groups_video(folder / "a.mp4", 24, kRate, 8);
   remux_video(folder / "a.mp4", folder / "whole.ts", "mpegts", kRate);
-  EXPECT_EQ(test::frame_numbers(folder / "whole.ts").size(), 24U);
+  EXPECT_EQ(frame_numbers(folder / "whole.ts").size(), 24U);
   const auto whole = bytes_of(folder / "whole.ts");
   ASSERT_EQ(whole.size() % 188, 0U);
   int errors = 0;
@@ -177,7 +155,7 @@ TEST(TruncatedVideo, TransportStreamsTellByPacketsAndByFramesThatWereToCome) {
     // In the middle of a packet.
     put_bytes(folder / "cut.ts", first_bytes(whole, packets[i].offset + 90));
     EXPECT_EQ(find_video_extent(folder / "cut.ts"), VideoExtent::kCutOff);
-    EXPECT_THAT(error_of([&] { test::frame_numbers(folder / "cut.ts"); }), HasSubstr("cut off"));
+    EXPECT_THAT(error_of([&] { frame_numbers(folder / "cut.ts"); }), HasSubstr("cut off"));
   }
   EXPECT_GT(errors, 0);
   // A recording that begins anywhere.
@@ -230,9 +208,9 @@ std::string box(const std::string& type, const std::string& contents) {
 TEST(VideoTables, MustNotPromiseMoreSamplesThanTheFileCanHold) {
   const TemporaryFolder folder;
   const auto problem = [&](const std::string& table) {
-    test::put_text(folder / "a.mp4",
-                   box("ftyp", "isom....") +
-                       box("moov", box("trak", box("mdia", box("minf", box("stbl", table))))));
+    put_text(folder / "a.mp4",
+             box("ftyp", "isom....") +
+                 box("moov", box("trak", box("mdia", box("minf", box("stbl", table))))));
     return error_of([&] { check_video_tables(folder / "a.mp4"); });
   };
   const auto sizes = [](std::uint32_t bytes, std::uint32_t samples) {
@@ -242,16 +220,16 @@ TEST(VideoTables, MustNotPromiseMoreSamplesThanTheFileCanHold) {
   EXPECT_EQ(problem(sizes(0, 50'000'000)), "");  // with a table, whose length readers look at
   EXPECT_THAT(problem(sizes(1, 50'000'000)),
               AllOf(HasSubstr("a.mp4"), HasSubstr("cannot hold the 50000000 samples")));
-  test::put_text(folder / "b.mp4",
-                 box("ftyp", "isom....") +
-                     box("moof", box("traf", box("trun", big_endian(1) + big_endian(50'000'000)))));
+  put_text(folder / "b.mp4",
+           box("ftyp", "isom....") +
+               box("moof", box("traf", box("trun", big_endian(1) + big_endian(50'000'000)))));
   EXPECT_THAT(error_of([&] { VideoReader(folder / "b.mp4"); }), HasSubstr("cannot hold"));
   // Boxes within boxes to any depth are no matter of ours.
   std::string nested;
   for (int i = 0; i < 2000; ++i) {
     nested = box("moov", nested);
   }
-  test::put_text(folder / "c.mp4", nested);
+  put_text(folder / "c.mp4", nested);
   EXPECT_EQ(error_of([&] { check_video_tables(folder / "c.mp4"); }), "");
 }
 
@@ -259,7 +237,7 @@ TEST(VideoTables, MustNotPromiseMoreSamplesThanTheFileCanHold) {
 TEST(TruncatedVideo, ItsSoundEndsAtTheCut) {
   const TemporaryFolder folder;
   put_numbered_video(folder / "a.mp4", 20, kRate);
-  test::Sound sound{8000, std::vector<float>(16000)};
+  Sound sound{8000, std::vector<float>(16000)};
   for (std::size_t i = 0; i < sound.samples.size(); ++i) {
     sound.samples[i] = static_cast<float>(i % 40) / 80;
   }
@@ -278,7 +256,7 @@ TEST(TruncatedVideo, ItsSoundEndsAtTheCut) {
                 }),
                 "")
           << video << " " << bytes;
-      const auto samples = test::read_sound(folder / "joined.mp4").samples.size();
+      const auto samples = read_sound(folder / "joined.mp4").samples.size();
       EXPECT_GT(samples, 4000U);
       EXPECT_LT(samples, 16000U);
     }
@@ -301,5 +279,4 @@ TEST(TruncatedVideo, AnMp4WithoutIndexIsRefusedAndSaysWhy) {
   }
 }
 
-}  // namespace truncated_video_test
-}  // namespace vantage
+}  // namespace vantage::truncated_video_test

@@ -1,20 +1,9 @@
 #include "engine/tuning/tuner.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <ostream>
-#include <random>
-#include <string>
-
-#include "engine/error.h"
 #include "engine/tuning/candidate_ladder.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace tuner_test {
+namespace vantage::tuner_test {
 
 /// Settings with every field known.
 struct Plan {
@@ -368,5 +357,4 @@ TEST(Tuner, RefusesABudgetThatIsNone) {
   EXPECT_THROW(Tuner(machine, machine, clock, {.start = {.threads = 0}}), UsageError);
 }
 
-}  // namespace tuner_test
-}  // namespace vantage
+}  // namespace vantage::tuner_test

@@ -1,27 +1,10 @@
 #include "engine/tuning/tuning_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <array>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
-#include <thread>
-#include <vector>
-
-#include "engine/error.h"
-#include "tests/temporary_folder.h"
-
-namespace vantage {
-namespace tuning_file_test {
+namespace vantage::tuning_file_test {
 
 namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 TuningEntry entry(const std::string& size, int strip_width_px = 160) {
   TuningEntry one;
@@ -220,5 +203,4 @@ TEST(DefaultTuningPath, FollowsTheBaseDirectories) {
   EXPECT_EQ(path_with(nullptr, "relative"), "");
 }
 
-}  // namespace tuning_file_test
-}  // namespace vantage
+}  // namespace vantage::tuning_file_test

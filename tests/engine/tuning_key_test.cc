@@ -1,19 +1,10 @@
 #include "engine/tuning/tuning_key.h"
 
-#include <gtest/gtest.h>
-
-#include <optional>
-#include <set>
-#include <string>
-#include <string_view>
-#include <type_traits>
-#include <vector>
-
 #include "engine/build_info.h"
 #include "engine/matching/options/method_fields.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace tuning_key_test {
+namespace vantage::tuning_key_test {
 
 class TuningKeyTest : public testing::Test {
  protected:
@@ -205,9 +196,8 @@ TEST_F(TuningKeyTest, HasTextForEveryMethodAndSize) {
   }
   match_.parameters.iterations = 0;
   match_.disparities = {0, 0};
-  EXPECT_NE(key().method.find("about 0 iterations"), std::string::npos);
+  EXPECT_THAT(key().method, HasSubstr("about 0 iterations"));
   EXPECT_EQ(key({1, 1, false}).size, "about 1x1 pixels, 1 disparities");
 }
 
-}  // namespace tuning_key_test
-}  // namespace vantage
+}  // namespace vantage::tuning_key_test

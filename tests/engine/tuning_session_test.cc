@@ -1,13 +1,8 @@
 #include "engine/tuning/tuning_session.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <atomic>
-
-#include "engine/error.h"
-
-namespace vantage {
-namespace tuning_session_test {
+namespace vantage::tuning_session_test {
 
 TEST(TuneMachine, FindsSomethingToStoreInLittleTime) {
   TuningRequest request;
@@ -60,5 +55,4 @@ TEST(TuneMachine, RefusesWhatCannotBe) {
   EXPECT_THROW(tune_machine(request, {}, nullptr), Error);
 }
 
-}  // namespace tuning_session_test
-}  // namespace vantage
+}  // namespace vantage::tuning_session_test

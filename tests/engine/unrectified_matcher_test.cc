@@ -2,22 +2,16 @@
 // pairs.
 #include "engine/matching/unrectified_matcher.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <cmath>
-#include <string>
 
-#include "engine/error.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/search/epipolar/rectified_map.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/epipolar_grid.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace unrectified_matcher_test {
+namespace vantage::unrectified_matcher_test {
 
 constexpr int kWidth = 160;
 constexpr int kHeight = 120;
@@ -59,12 +53,10 @@ class UnrectifiedMatching : public testing::Test {
     const Mask hidden = scene_.occlusion(left_camera_, right_camera_, 0);
     int bad = 0;
     int all = 0;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        if (hidden.at(x, y) == 0) {
-          ++all;
-          bad += std::abs(map.at(x, y) - true_disparity_px(rectifier, x, y)) <= 1 ? 0 : 1;
-        }
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      if (hidden.at(x, y) == 0) {
+        ++all;
+        bad += std::abs(map.at(x, y) - true_disparity_px(rectifier, x, y)) <= 1 ? 0 : 1;
       }
     }
     return static_cast<double>(bad) / all;
@@ -141,8 +133,8 @@ TEST_F(UnrectifiedMatching, DoesNotDependOnThreadsOrStrips) {
   Execution alone({.threads = 1, .strip_width_px = 23});
   DisparityMaps same;
   UnrectifiedMatcher(options, rectifier, alone).match(left_.image, right_.image, {}, same);
-  EXPECT_TRUE(test::identical(maps.left.disparity_px, same.left.disparity_px));
-  EXPECT_TRUE(test::identical(maps.right.disparity_px, same.right.disparity_px));
+  EXPECT_TRUE(identical(maps.left.disparity_px, same.left.disparity_px));
+  EXPECT_TRUE(identical(maps.right.disparity_px, same.right.disparity_px));
 }
 
 // Of a rectified pair, lines are rows and samples pixels.
@@ -165,13 +157,11 @@ TEST_F(UnrectifiedMatching, OfARectifiedPairIsItsMap) {
     UnrectifiedMatcher(options, rectifier, execution_).match(left, right, {}, maps);
     int different = 0;
     constexpr int kBorder = 16 + 30;  // what lies outside differs, and spreads
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = kBorder; x < kWidth - kBorder; ++x) {
-        different +=
-            std::abs(maps.left.disparity_px.at(x, y) - expected.left.disparity_px.at(x, y)) < 1e-4F
-                ? 0
-                : 1;
-      }
+    for (const auto [x, y] : positions_of({kBorder, kWidth - kBorder}, {0, kHeight})) {
+      different +=
+          std::abs(maps.left.disparity_px.at(x, y) - expected.left.disparity_px.at(x, y)) < 1e-4F
+              ? 0
+              : 1;
     }
     EXPECT_EQ(different, 0) << name_of(method);
   }
@@ -182,11 +172,9 @@ TEST_F(UnrectifiedMatching, MapsCanBeBroughtToTheRectifiedImages) {
   MatchedMap map;
   map.disparity_px.resize(kWidth, kHeight);
   map.unmatched.resize(kWidth, kHeight);
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      map.disparity_px.at(x, y) = static_cast<float>(1000 * y + x);
-      map.unmatched.at(x, y) = 0;
-    }
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    map.disparity_px.at(x, y) = static_cast<float>(1000 * y + x);
+    map.unmatched.at(x, y) = 0;
   }
   bring_to_rectified(rectifier, Side::kLeft, execution_, map);
   EXPECT_TRUE(map.confidence.empty());
@@ -213,5 +201,4 @@ TEST_F(UnrectifiedMatching, RefusesWhatNeedsRows) {
   EXPECT_THROW(UnrectifiedMatcher(options, rectifier, execution_), UsageError);
 }
 
-}  // namespace unrectified_matcher_test
-}  // namespace vantage
+}  // namespace vantage::unrectified_matcher_test

@@ -2,12 +2,12 @@
 
 #include <Eigen/Dense>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 
 #include "engine/generation/layered_scene.h"
 #include "tests/engine/calibration_cases.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 inline Eigen::Matrix3d turned_by(double x, double y, double z) {
   return (Eigen::AngleAxisd(x, Eigen::Vector3d::UnitX()) *
@@ -34,16 +34,16 @@ inline Photograph warped(const Photograph& photograph, const Eigen::Matrix3d& ho
 }
 
 /// A rendered scene as a pair of cameras sees it that have been turned by some degrees.
-struct UnrectifiedPair {
+struct RenderedPair {
   Photograph left;
   Photograph right;
   StereoCalibration calibration;  ///< the truth; the baseline is 1 long
 };
 
-inline UnrectifiedPair unrectified_pair(Execution& execution, int width = 320, int height = 240) {
+inline RenderedPair unrectified_pair(Execution& execution, int width = 320, int height = 240) {
   LayeredScene scene({.width_px = width, .height_px = height, .samples_per_side = 2}, execution);
   const double focal = scene.focal_length_px();
-  UnrectifiedPair pair;
+  RenderedPair pair;
   Camera camera;
   camera.matrix << focal, 0, (width - 1) / 2.0, 0, focal, (height - 1) / 2.0, 0, 0, 1;
   pair.calibration.left = camera;
@@ -60,4 +60,4 @@ inline UnrectifiedPair unrectified_pair(Execution& execution, int width = 320, i
   return pair;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,24 +1,13 @@
 #include "engine/matching/vertical_range.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <utility>
-#include <variant>
-
 #include "engine/generation/layered_scene.h"
 #include "engine/image/transposed.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/matching/range_estimation.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace vertical_range_test {
-
-using testing::HasSubstr;
+namespace vantage::vertical_range_test {
 
 /// The photograph with rows moved up by `rows`, the last one repeated.
 template <typename T>
@@ -58,16 +47,15 @@ void expect_around(DisparityRange range, int value, int max) {
 }
 
 TEST(VerticalRange, IsAroundTheRowsThatCorrespond) {
-  Execution execution({.threads = 2});
-  const Pair pair = made_up_scene(execution);
-  const DisparityRange of_rectified = estimate_disparity_range(pair.left, pair.right, execution);
+  const Pair pair = made_up_scene(execution());
+  const DisparityRange of_rectified = estimate_disparity_range(pair.left, pair.right, execution());
   for (const int rows : {0, 3, -11, 40}) {
     SCOPED_TRACE(rows);
     const Photograph right = moved_up(pair.right, rows);
-    const auto range = find_vertical_range(pair.left, right, execution);
+    const auto range = find_vertical_range(pair.left, right, execution());
     ASSERT_TRUE(range);
     expect_around(*range, rows, 5);
-    const auto across = find_disparity_range(pair.left, right, execution, *range);
+    const auto across = find_disparity_range(pair.left, right, execution(), *range);
     ASSERT_TRUE(across);
     EXPECT_NEAR(across->min, of_rectified.min, 4);
     EXPECT_NEAR(across->max, of_rectified.max, 4);
@@ -75,15 +63,14 @@ TEST(VerticalRange, IsAroundTheRowsThatCorrespond) {
 }
 
 TEST(VerticalRange, HoldsTheBaselineOfCamerasOneAboveTheOther) {
-  Execution execution({.threads = 2});
-  const Pair pair = made_up_scene(execution);
+  const Pair pair = made_up_scene(execution());
   const Photograph upper = transposed(pair.left);
   const Photograph lower = transposed(pair.right);
-  const auto range = find_vertical_range(upper, lower, execution);
+  const auto range = find_vertical_range(upper, lower, execution());
   ASSERT_TRUE(range);
   EXPECT_LE(range->min, 8);
   EXPECT_GE(range->max, 26);
-  const auto across = find_disparity_range(upper, lower, execution, *range);
+  const auto across = find_disparity_range(upper, lower, execution(), *range);
   ASSERT_TRUE(across);
   EXPECT_LE(across->min, 0);
   EXPECT_GE(across->max, 0);
@@ -95,30 +82,27 @@ TEST(VerticalRange, OfPhotographsIsNarrow) {
   if (!std::filesystem::exists(data)) {
     GTEST_SKIP() << "no photographs at " << data;
   }
-  Execution execution({.threads = 2});
   const Photograph left = read_photograph(data / "cones/im2.png");
   const Photograph right = read_photograph(data / "cones/im6.png");
   for (const int rows : {0, 2, -9}) {
-    const auto range = find_vertical_range(left, moved_up(right, rows), execution);
+    const auto range = find_vertical_range(left, moved_up(right, rows), execution());
     ASSERT_TRUE(range);
     expect_around(*range, rows, 5);
   }
 }
 
 TEST(VerticalRange, NeedsPointsInCommon) {
-  Execution execution({.threads = 1});
   Image<std::uint8_t> grey(200, 100);
   grey.fill(77);
   const Photograph constant{std::move(grey)};
-  EXPECT_FALSE(find_vertical_range(constant, constant, execution));
-  EXPECT_FALSE(find_vertical_range(test::noise<std::uint8_t>(200, 100, 1, 1),
-                                   test::noise<std::uint8_t>(200, 100, 1, 2), execution));
-  EXPECT_THAT(test::error_of([&] {
-                find_vertical_range(test::noise<std::uint8_t>(20, 10, 1),
-                                    test::noise<std::uint8_t>(20, 11, 1), execution);
+  EXPECT_FALSE(find_vertical_range(constant, constant, execution()));
+  EXPECT_FALSE(find_vertical_range(noise<std::uint8_t>(200, 100, 1, 1),
+                                   noise<std::uint8_t>(200, 100, 1, 2), execution()));
+  EXPECT_THAT(error_of([&] {
+                find_vertical_range(noise<std::uint8_t>(20, 10, 1), noise<std::uint8_t>(20, 11, 1),
+                                    execution());
               }),
               HasSubstr("expected equal sizes"));
 }
 
-}  // namespace vertical_range_test
-}  // namespace vantage
+}  // namespace vantage::vertical_range_test

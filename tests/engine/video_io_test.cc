@@ -1,41 +1,25 @@
 #include "engine/io/video/video_io.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <sys/resource.h>
 
-#include <cmath>
 #include <csignal>
-#include <string>
-#include <vector>
 
 #include "engine/io/images/photograph_io.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 #include "tests/test_paths.h"
 
-namespace vantage {
-namespace video_io_test {
-
-using test::bytes_of;
-using test::error_of;
-using test::noise;
-using test::put_bytes;
-using test::put_numbered_video;
-using test::put_text;
-using ::testing::HasSubstr;
+namespace vantage::video_io_test {
 
 /// Left half (200, 60, 30), right half (30, 90, 220); a white square that moves with the frame.
 Photograph test_frame(int width, int height, int index) {
   Image<std::uint8_t> image(width, height, 3);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const bool left = x < width / 2;
-      const bool square = y < 8 && x / 8 == index;
-      const int colour[3] = {left ? 200 : 30, left ? 60 : 90, left ? 30 : 220};
-      for (int channel = 0; channel < 3; ++channel) {
-        image.at(x, y, channel) = static_cast<std::uint8_t>(square ? 255 : colour[channel]);
-      }
+  for (const auto [x, y] : positions_of(width, height)) {
+    const bool left = x < width / 2;
+    const bool square = y < 8 && x / 8 == index;
+    const int colour[3] = {left ? 200 : 30, left ? 60 : 90, left ? 30 : 220};
+    for (int channel = 0; channel < 3; ++channel) {
+      image.at(x, y, channel) = static_cast<std::uint8_t>(square ? 255 : colour[channel]);
     }
   }
   return {std::move(image)};
@@ -134,12 +118,10 @@ TEST(VideoIo, GradientsSurviveClosely) {
   const TemporaryFolder folder;
   Photograph gradient{Image<std::uint8_t>(96, 64, 3)};
   auto& image = std::get<Image<std::uint8_t>>(gradient.pixels);
-  for (int y = 0; y < 64; ++y) {
-    for (int x = 0; x < 96; ++x) {
-      image.at(x, y, 0) = static_cast<std::uint8_t>(40 + 2 * x);
-      image.at(x, y, 1) = static_cast<std::uint8_t>(30 + 3 * y);
-      image.at(x, y, 2) = static_cast<std::uint8_t>(220 - x - y);
-    }
+  for (const auto [x, y] : positions_of(96, 64)) {
+    image.at(x, y, 0) = static_cast<std::uint8_t>(40 + 2 * x);
+    image.at(x, y, 1) = static_cast<std::uint8_t>(30 + 3 * y);
+    image.at(x, y, 2) = static_cast<std::uint8_t>(220 - x - y);
   }
   VideoWriter writer(folder / "a.mp4", 96, 64, {.rate = {}, .crf = 0});
   writer.write(gradient);
@@ -149,14 +131,12 @@ TEST(VideoIo, GradientsSurviveClosely) {
   ASSERT_TRUE(reader.read(frame));
   double squares = 0;
   double sum = 0;
-  for (int y = 0; y < 64; ++y) {
-    for (int i = 0; i < 3 * 96; ++i) {
-      const double difference =
-          std::get<Image<std::uint8_t>>(frame.pixels).row(y)[i] - image.row(y)[i];
-      EXPECT_LE(std::abs(difference), 4) << i / 3 << "," << y << " channel " << i % 3;
-      squares += difference * difference;
-      sum += difference;
-    }
+  for (const auto [i, y] : positions_of(3 * 96, 64)) {
+    const double difference =
+        std::get<Image<std::uint8_t>>(frame.pixels).row(y)[i] - image.row(y)[i];
+    EXPECT_LE(std::abs(difference), 4) << i / 3 << "," << y << " channel " << i % 3;
+    squares += difference * difference;
+    sum += difference;
   }
   EXPECT_LT(std::sqrt(squares / (64 * 3 * 96)), 0.9);
   EXPECT_LT(std::abs(sum / (64 * 3 * 96)), 0.1);
@@ -176,12 +156,10 @@ TEST(VideoIo, PassesOnPhotographsWell) {
   for (const Photograph& expected : frames) {
     ASSERT_TRUE(reader.read(frame));
     double squares = 0;
-    for (int y = 0; y < 64; ++y) {
-      for (int i = 0; i < 3 * 96; ++i) {
-        squares += std::pow(std::get<Image<std::uint8_t>>(frame.pixels).row(y)[i] -
-                                std::get<Image<std::uint8_t>>(expected.pixels).row(y)[i],
-                            2);
-      }
+    for (const auto [i, y] : positions_of(3 * 96, 64)) {
+      squares += std::pow(std::get<Image<std::uint8_t>>(frame.pixels).row(y)[i] -
+                              std::get<Image<std::uint8_t>>(expected.pixels).row(y)[i],
+                          2);
     }
     // Sharp borders of colours lose to chroma of half the resolution.
     EXPECT_GT(10 * std::log10(255 * 255 / (squares / (64 * 3 * 96))), 29);
@@ -331,10 +309,8 @@ TEST(VideoIo, ReadsTheSharedVideoWhichShowsTheSharedFrames) {
       const auto& image = std::get<Image<std::uint8_t>>(frame.pixels);
       for (int channel = 0; channel < 3; ++channel) {
         double sum = 0;
-        for (int y = 0; y < expected.height(); ++y) {
-          for (int x = 0; x < expected.width(); ++x) {
-            sum += std::abs(image.at(x, y, channel) - expected.at(x, y));
-          }
+        for (const auto [x, y] : positions_of(expected)) {
+          sum += std::abs(image.at(x, y, channel) - expected.at(x, y));
         }
         EXPECT_LT(sum / (expected.width() * expected.height()), 3) << channel;
       }
@@ -344,5 +320,4 @@ TEST(VideoIo, ReadsTheSharedVideoWhichShowsTheSharedFrames) {
   EXPECT_EQ(frames, 51);
 }
 
-}  // namespace video_io_test
-}  // namespace vantage
+}  // namespace vantage::video_io_test

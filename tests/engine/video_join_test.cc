@@ -1,36 +1,15 @@
 #include "engine/io/video/video_join.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <numeric>
-#include <string>
-#include <vector>
-
 extern "C" {
 #include <libavformat/avformat.h>
 }
 
 #include "engine/io/video/libav.h"
 #include "engine/io/video/video_io.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 
-namespace vantage {
-namespace video_join_test {
-
-using test::bytes_of;
-using test::error_of;
-using test::frame_numbers;
-using test::put_bytes;
-using test::put_numbered_video;
-using test::read_sound;
-using test::remux_video;
-using test::Sound;
-using test::sound_codec;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+namespace vantage::video_join_test {
 
 constexpr FrameRate kRate{10, 1};
 
@@ -206,7 +185,7 @@ TEST(VideoJoin, FollowsSoundThatChangesBetweenStereoAndMono) {
   const auto segments = put_segments(folder, {15});
   for (const std::vector<int>& channels : {std::vector{2, 1}, {1, 2}, {2, 1, 2}}) {
     const int parts = static_cast<int>(channels.size());
-    test::put_changing_sound(folder / "changing.mkv", channels);
+    put_changing_sound(folder / "changing.mkv", channels);
     EXPECT_EQ(join_videos(segments, kRate, {folder / "changing.mkv", 0, 0.48 * parts},
                           folder / "joined.mp4"),
               "");
@@ -228,7 +207,7 @@ TEST(VideoJoin, FollowsSoundThatChangesBetweenStereoAndMono) {
 TEST(VideoJoin, LeavesOutSoundThatCannotBeDecodedAndSaysWhy) {
   const TemporaryFolder folder;
   const auto segments = put_segments(folder, {8, 7});
-  test::put_changing_sound(folder / "a.mkv", {2}, true);
+  put_changing_sound(folder / "a.mkv", {2}, true);
   EXPECT_THAT(join_videos(segments, kRate, {folder / "a.mkv", 0, 0.4}, folder / "joined.mp4"),
               AllOf(HasSubstr("a.mkv"), HasSubstr("sound")));
   EXPECT_EQ(sound_codec(folder / "joined.mp4"), "");
@@ -274,5 +253,4 @@ TEST(VideoJoin, RefusesWhatIsMissingDamagedOrDoesNotFit) {
   EXPECT_FALSE(std::filesystem::exists(folder / "joined.mp4"));
 }
 
-}  // namespace video_join_test
-}  // namespace vantage
+}  // namespace vantage::video_join_test

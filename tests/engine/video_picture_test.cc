@@ -2,38 +2,22 @@
 
 #include "engine/io/video/video_picture.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <atomic>
-#include <filesystem>
-#include <map>
-#include <numeric>
-#include <optional>
-#include <random>
-#include <string>
-#include <thread>
-#include <vector>
-
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/libav_scaler.h"
 #include "engine/io/video/video_io.h"
 #include "engine/sequence/sequence_runner.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
-#include "tests/temporary_folder.h"
 
 extern "C" {
 #include <libavutil/frame.h>
 #include <libavutil/pixfmt.h>
 }
 
-namespace vantage {
-namespace video_picture_test {
+namespace vantage::video_picture_test {
 
 namespace fs = std::filesystem;
-using test::error_of;
 
 constexpr FrameRate kRate{10, 1};
 constexpr int kFrames = 24;
@@ -41,7 +25,7 @@ constexpr int kGroup = 7;
 
 TEST(VideoPicture, ThreadsMakeTheSamePhotographsInAnyOrder) {
   const TemporaryFolder folder;
-  test::put_numbered_video(folder / "a.mp4", kFrames, kRate, 638, 478);  // long enough to overlap
+  put_numbered_video(folder / "a.mp4", kFrames, kRate, 638, 478);  // long enough to overlap
   std::vector<FetchedFrame> frames(kFrames);
   {
     const auto source = open_frame_source(folder / "a.mp4");
@@ -70,8 +54,8 @@ TEST(VideoPicture, ThreadsMakeTheSamePhotographsInAnyOrder) {
   for (int i = 0; i < kFrames; ++i) {
     const FetchedFrame& frame = frames[static_cast<std::size_t>(i)];
     ASSERT_TRUE(reader.read(expected));
-    EXPECT_TRUE(test::same(frame.photograph, expected)) << i;
-    EXPECT_EQ(test::number_of_frame(frame.photograph), i);
+    EXPECT_TRUE(same(frame.photograph, expected)) << i;
+    EXPECT_EQ(number_of_frame(frame.photograph), i);
     EXPECT_TRUE(frame.picture.is_empty()) << "the decoder's memory is still held";
   }
 }
@@ -141,7 +125,7 @@ Outcome run_over(const fs::path& video, const fs::path& folder, int threads, int
   }
   for (const char* kind : {"disparity", "stereo"}) {
     for (const auto& entry : fs::directory_iterator(folder / kind)) {
-      outcome.files[kind + ("/" + entry.path().filename().string())] = test::bytes_of(entry.path());
+      outcome.files[kind + ("/" + entry.path().filename().string())] = bytes_of(entry.path());
     }
   }
   return outcome;
@@ -149,11 +133,11 @@ Outcome run_over(const fs::path& video, const fs::path& folder, int threads, int
 
 TEST(VideoPicture, RunsOverDamagedVideosAreTheSameHoweverManyWork) {
   const TemporaryFolder folder;
-  test::put_closed_groups_video(folder / "a.mp4", kFrames, kRate, kGroup);
-  const auto packets = test::video_packets(folder / "a.mp4");
-  auto bytes = test::bytes_of(folder / "a.mp4");
+  put_closed_groups_video(folder / "a.mp4", kFrames, kRate, kGroup);
+  const auto packets = video_packets(folder / "a.mp4");
+  auto bytes = bytes_of(folder / "a.mp4");
   std::fill_n(bytes.begin() + packets[kGroup + 2].offset, 4, std::uint8_t{0xFF});
-  test::put_bytes(folder / "a.mp4", bytes);
+  put_bytes(folder / "a.mp4", bytes);
   std::optional<Outcome> expected;
   for (const auto& [threads, in_flight] : {std::pair{1, 1}, {1, 4}, {2, 2}, {2, 6}, {4, 9}}) {
     SCOPED_TRACE(testing::Message() << threads << " threads, " << in_flight << " in flight");
@@ -170,7 +154,7 @@ TEST(VideoPicture, RunsOverDamagedVideosAreTheSameHoweverManyWork) {
           const std::string number = std::to_string(frame);
           const fs::path file =
               out / "stereo" / (std::string(6 - number.size(), '0') + number + ".png");
-          EXPECT_EQ(test::number_of_frame(read_photograph(file.string())), frame);
+          EXPECT_EQ(number_of_frame(read_photograph(file.string())), frame);
         }
       }
     }
@@ -179,5 +163,4 @@ TEST(VideoPicture, RunsOverDamagedVideosAreTheSameHoweverManyWork) {
   }
 }
 
-}  // namespace video_picture_test
-}  // namespace vantage
+}  // namespace vantage::video_picture_test

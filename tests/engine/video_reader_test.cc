@@ -1,37 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <random>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "engine/io/video/video_io.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 
-namespace vantage {
-namespace video_reader_test {
-
-using test::bytes_of;
-using test::error_of;
-using test::frame_numbers;
-using test::noise;
-using test::number_of_frame;
-using test::put_bytes;
-using test::put_numbered_video;
-using test::put_open_groups_video;
-using test::put_raw_video;
-using test::RawVideo;
-using test::remux_video;
-using test::video_packets;
-using test::VideoPacket;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
+namespace vantage::video_reader_test {
 
 /// RGB in 0..1 of luma and chroma, by the definition of the standards.
 std::array<double, 3> rgb_of(const RawVideo& video, double luma, double blue, double red) {
@@ -67,16 +40,14 @@ void expect_colours(const Photograph& photograph, const RawVideo& video) {
   const auto& image = std::get<Image<T>>(photograph.pixels);
   ASSERT_EQ(image.channels(), 3);
   const auto& planes = video.frames[0];
-  for (int y = 0; y < video.height; ++y) {
-    for (int x = 0; x < video.width; ++x) {
-      const auto i = static_cast<std::size_t>(y * video.width + x);
-      const auto expected = rgb_of(video, planes[0][i], planes[1][i], planes[2][i]);
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        const double value = expected.at(channel) * std::numeric_limits<T>::max();
-        // Rounded, not cut off.
-        ASSERT_NEAR(image.at(x, y, static_cast<int>(channel)), value, 0.53)
-            << x << "," << y << " channel " << channel;
-      }
+  for (const auto [x, y] : positions_of(video.width, video.height)) {
+    const auto i = static_cast<std::size_t>(y * video.width + x);
+    const auto expected = rgb_of(video, planes[0][i], planes[1][i], planes[2][i]);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const double value = expected.at(channel) * std::numeric_limits<T>::max();
+      // Rounded, not cut off.
+      ASSERT_NEAR(image.at(x, y, static_cast<int>(channel)), value, 0.53)
+          << x << "," << y << " channel " << channel;
     }
   }
 }
@@ -339,7 +310,7 @@ TEST(VideoReader, OpensOnlyVideos) {
         "#EXTM3U\n#EXT-X-TARGETDURATION:10\n#EXTINF:1,\n" + name + "\n#EXT-X-ENDLIST\n",
         std::string("plain text in a file that is called so\n")}) {
     for (const char* file : {"list.txt", "list.m3u8", "list.mp4"}) {
-      test::put_text(folder / file, text);
+      put_text(folder / file, text);
       EXPECT_THAT(error_of([&] { VideoReader(folder / file); }), HasSubstr("not a video")) << text;
     }
   }
@@ -347,9 +318,8 @@ TEST(VideoReader, OpensOnlyVideos) {
 
 TEST(VideoReader, RefusesAbsurdSizes) {
   const TemporaryFolder folder;
-  test::put_text(folder / "a.y4m", "YUV4MPEG2 W60000 H60000 F25:1 C444\nFRAME\nxxxx");
+  put_text(folder / "a.y4m", "YUV4MPEG2 W60000 H60000 F25:1 C444\nFRAME\nxxxx");
   EXPECT_THAT(error_of([&] { VideoReader(folder / "a.y4m"); }), HasSubstr("a.y4m"));
 }
 
-}  // namespace video_reader_test
-}  // namespace vantage
+}  // namespace vantage::video_reader_test

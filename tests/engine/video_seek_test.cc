@@ -1,31 +1,12 @@
 // Frames in the middle of a video, without decoding it from its beginning.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <iterator>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/video_io.h"
+#include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 #include "tests/test_sample.h"
 
-namespace vantage {
-namespace video_seek_test {
-
-using test::bytes_of;
-using test::error_of;
-using test::put_bytes;
-using test::put_closed_groups_video;
-using test::put_open_groups_video;
-using test::remux_video;
-using test::video_packets;
-using test::VideoPacket;
+namespace vantage::video_seek_test {
 
 constexpr FrameRate kRate{10, 1};
 constexpr int kFrames = 24;
@@ -60,7 +41,7 @@ TEST(VideoSeek, FramesFromAnyStartOnAreThoseFromTheBeginning) {
       const bool is_group_end = last + 1 == kFrames || (last + 1) % kGroup == 0;
       for (int i = start; i < (is_group_end ? kFrames : start + 1); ++i) {
         ASSERT_TRUE(reader.read(frame));
-        ASSERT_TRUE(test::same(frame, expected[static_cast<std::size_t>(i)])) << start << " " << i;
+        ASSERT_TRUE(same(frame, expected[static_cast<std::size_t>(i)])) << start << " " << i;
       }
       EXPECT_EQ(reader.go_to_start(start + 1, last), std::nullopt);
       if (is_group_end) {
@@ -92,7 +73,7 @@ TEST(VideoSeek, BeginsOnlyWhereNothingBeforeIsNeeded) {
   for (int start = kGroup - 3; start < kFrames - 3; start += kGroup) {
     ASSERT_EQ(reader.go_to_start(1, start + 1), start);
     ASSERT_TRUE(reader.read(frame));
-    EXPECT_TRUE(test::same(frame, expected[static_cast<std::size_t>(start)])) << start;
+    EXPECT_TRUE(same(frame, expected[static_cast<std::size_t>(start)])) << start;
   }
 }
 
@@ -117,7 +98,7 @@ void expect_same(const Outcome& outcome, const Outcome& expected) {
   EXPECT_EQ(outcome.is_end, expected.is_end);
   EXPECT_EQ(outcome.frame.remarks, expected.frame.remarks);
   if (expected.problem.empty() && !expected.is_end) {
-    EXPECT_TRUE(test::same(outcome.frame.photograph, expected.frame.photograph));
+    EXPECT_TRUE(same(outcome.frame.photograph, expected.frame.photograph));
   }
 }
 
@@ -131,19 +112,17 @@ std::vector<Outcome> expect_to_skip_everywhere(const std::filesystem::path& path
   }
   const auto source = open_frame_source(path.string());
   constexpr int kFrom[] = {0, 5, kGroup, 2 * kGroup + 1, kFrames};
-  for (int to = 0; to < kFrames; ++to) {
-    for (int k = 0; k < static_cast<int>(std::size(kFrom)); ++k) {
-      if (k != (to + turn) % 5 && !test::runs_everything()) {
-        continue;
-      }
-      const int from = kFrom[k];
-      SCOPED_TRACE(testing::Message() << path.filename() << " " << from << " to " << to);
-      source->skip_to(from);
-      expect_same(fetch_from(*source), expected[static_cast<std::size_t>(from)]);
-      source->skip_to(to);
-      expect_same(fetch_from(*source), expected[static_cast<std::size_t>(to)]);
-      expect_same(fetch_from(*source), expected[static_cast<std::size_t>(to) + 1]);
+  for (const auto [k, to] : positions_of(static_cast<int>(std::size(kFrom)), kFrames)) {
+    if (k != (to + turn) % 5 && !runs_everything()) {
+      continue;
     }
+    const int from = kFrom[k];
+    SCOPED_TRACE(testing::Message() << path.filename() << " " << from << " to " << to);
+    source->skip_to(from);
+    expect_same(fetch_from(*source), expected[static_cast<std::size_t>(from)]);
+    source->skip_to(to);
+    expect_same(fetch_from(*source), expected[static_cast<std::size_t>(to)]);
+    expect_same(fetch_from(*source), expected[static_cast<std::size_t>(to) + 1]);
   }
   return expected;
 }
@@ -192,5 +171,4 @@ TEST(VideoSeek, DamageEndsWithItsGroup) {
   }
 }
 
-}  // namespace video_seek_test
-}  // namespace vantage
+}  // namespace vantage::video_seek_test

@@ -1,18 +1,15 @@
 #include "tests/engine/video_test_support.h"
 
-#include <algorithm>
-#include <map>
-#include <stdexcept>
-
 #include "engine/io/video/frame_conversion.h"
 #include "engine/io/video/libav.h"
+#include "tests/engine/engine_test.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 }
 
-namespace vantage::test {
+namespace vantage::inline test {
 namespace {
 
 struct Close {
@@ -291,4 +288,4 @@ Sound read_sound(const std::filesystem::path& path) {
   return sound;
 }
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

@@ -1,17 +1,9 @@
 #pragma once
 
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "engine/io/video/video_io.h"
-#include "tests/engine/io_test_support.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage::test {
+namespace vantage::inline test {
 
 /// A raw video: exactly the numbers that a reader has to convert.
 struct RawVideo {
@@ -44,10 +36,8 @@ inline void put_raw_video(const std::filesystem::path& path, const RawVideo& vid
 inline Photograph numbered_frame(int width, int height, int number) {
   Photograph frame = noise<std::uint8_t>(width, height, 3, static_cast<unsigned>(number));
   auto& image = std::get<Image<std::uint8_t>>(frame.pixels);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < 3 * width; ++x) {
-      image.row(y)[x] = static_cast<std::uint8_t>(16 + 9 * number + image.row(y)[x] / 32);
-    }
+  for (const auto [x, y] : positions_of(3 * width, height)) {
+    image.row(y)[x] = static_cast<std::uint8_t>(16 + 9 * number + image.row(y)[x] / 32);
   }
   return frame;
 }
@@ -67,10 +57,8 @@ inline void put_numbered_video(const std::filesystem::path& path, int frames, Fr
 inline int number_of_frame(const Photograph& frame) {
   const auto& image = std::get<Image<std::uint8_t>>(frame.pixels);
   double sum = 0;
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width() * image.channels(); ++x) {
-      sum += image.row(y)[x];
-    }
+  for (const auto [x, y] : positions_of(image.width() * image.channels(), image.height())) {
+    sum += image.row(y)[x];
   }
   const double mean = sum / (image.width() * image.channels() * image.height());
   return static_cast<int>(std::lround((mean - 19.5) / 9));
@@ -129,4 +117,4 @@ std::string sound_codec(const std::filesystem::path& path);
 /// The sound of a file; without any, no samples.
 Sound read_sound(const std::filesystem::path& path);
 
-}  // namespace vantage::test
+}  // namespace vantage::inline test

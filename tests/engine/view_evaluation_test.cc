@@ -1,30 +1,15 @@
 #include "engine/evaluation/view_evaluation.h"
 
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <cmath>
-#include <functional>
-#include <random>
-#include <utility>
-
-#include "engine/error.h"
-
-namespace vantage {
-namespace view_evaluation_test {
-
-Execution& serial() {
-  static Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
-  return execution;
-}
+namespace vantage::view_evaluation_test {
 
 Photograph picture(int width, int height, int channels,
                    const std::function<int(int, int, int)>& level) {
   Image<std::uint8_t> image(width, height, channels);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (int c = 0; c < channels; ++c) {
-        image.at(x, y, c) = static_cast<std::uint8_t>(level(x, y, c));
-      }
+  for (const auto [x, y] : positions_of(width, height)) {
+    for (int c = 0; c < channels; ++c) {
+      image.at(x, y, c) = static_cast<std::uint8_t>(level(x, y, c));
     }
   }
   return {std::move(image)};
@@ -50,11 +35,9 @@ double luma(const Photograph& photograph, int x, int y) {
 double plain_ssim(const Photograph& a, const Photograph& b) {
   double weights[11][11];
   double weight_sum = 0;
-  for (int j = 0; j < 11; ++j) {
-    for (int i = 0; i < 11; ++i) {
-      weights[j][i] = std::exp(-((i - 5) * (i - 5) + (j - 5) * (j - 5)) / 4.5);
-      weight_sum += weights[j][i];
-    }
+  for (const auto [i, j] : positions_of(11, 11)) {
+    weights[j][i] = std::exp(-((i - 5) * (i - 5) + (j - 5) * (j - 5)) / 4.5);
+    weight_sum += weights[j][i];
   }
   double sum = 0;
   int windows = 0;
@@ -62,10 +45,8 @@ double plain_ssim(const Photograph& a, const Photograph& b) {
     for (int x = 0; x + 11 <= a.width(); ++x, ++windows) {
       const auto average = [&](const std::function<double(int, int)>& value) {
         double total = 0;
-        for (int j = 0; j < 11; ++j) {
-          for (int i = 0; i < 11; ++i) {
-            total += weights[j][i] * value(x + i, y + j);
-          }
+        for (const auto [i, j] : positions_of(11, 11)) {
+          total += weights[j][i] * value(x + i, y + j);
         }
         return total / weight_sum;
       };
@@ -91,7 +72,7 @@ TEST(ViewEvaluation, SsimAgreesWithPlainTranscription) {
     for (const int channels : {1, 3, 4}) {
       const Photograph a = random_picture(width, height, channels, 1);
       const Photograph b = random_picture(width, height, channels, 2);
-      const ViewScores scores = evaluate_view(a, b, serial());
+      const ViewScores scores = evaluate_view(a, b, execution());
       ASSERT_TRUE(scores.ssim.has_value());
       EXPECT_NEAR(*scores.ssim, plain_ssim(a, b), 1e-9);
       EXPECT_LT(*scores.ssim, 0.99);
@@ -103,15 +84,15 @@ TEST(ViewEvaluation, SsimIsOneForEqualAndNegativeForInvertedPictures) {
   const Photograph a = random_picture(20, 20, 1, 3);
   const Photograph inverted =
       picture(20, 20, 1, [&](int x, int y, int) { return 255 - static_cast<int>(luma(a, x, y)); });
-  EXPECT_NEAR(evaluate_view(a, a, serial()).ssim.value(), 1, 1e-12);
-  EXPECT_LT(evaluate_view(a, inverted, serial()).ssim.value(), 0);
-  EXPECT_EQ(evaluate_view(a, a, serial()).psnr_db, std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(evaluate_view(a, a, execution()).ssim.value(), 1, 1e-12);
+  EXPECT_LT(evaluate_view(a, inverted, execution()).ssim.value(), 0);
+  EXPECT_EQ(evaluate_view(a, a, execution()).psnr_db, std::numeric_limits<double>::infinity());
 }
 
 TEST(ViewEvaluation, PsnrOfAConstantDifference) {
   const Photograph a = picture(5, 3, 3, [](int, int, int) { return 100; });
   const Photograph b = picture(5, 3, 3, [](int, int, int c) { return c == 1 ? 110 : 100; });
-  const ViewScores scores = evaluate_view(a, b, serial());
+  const ViewScores scores = evaluate_view(a, b, execution());
   EXPECT_NEAR(scores.psnr_db, 10 * std::log10(255.0 * 255.0 * 3 / 100), 1e-9);
   EXPECT_NEAR(scores.mean_absolute_difference, 10.0 / 3, 1e-12);
   EXPECT_EQ(scores.pixels, 15);
@@ -125,11 +106,11 @@ TEST(ViewEvaluation, MaskSelectsPixels) {
   mask.fill(0);
   mask.at(2, 0) = 255;
   mask.at(1, 1) = 254;  // not set
-  const ViewScores scores = evaluate_view(a, b, serial(), mask.view());
+  const ViewScores scores = evaluate_view(a, b, execution(), mask.view());
   EXPECT_EQ(scores.pixels, 1);
   EXPECT_DOUBLE_EQ(scores.mean_absolute_difference, 20);
   mask.fill(0);
-  EXPECT_THROW((void)evaluate_view(a, b, serial(), mask.view()), Error);
+  EXPECT_THROW((void)evaluate_view(a, b, execution(), mask.view()), Error);
 }
 
 TEST(ViewEvaluation, DepthsShareOneScaleAndAlphaIsLeftOut) {
@@ -137,32 +118,30 @@ TEST(ViewEvaluation, DepthsShareOneScaleAndAlphaIsLeftOut) {
   const auto& bytes = std::get<Image<std::uint8_t>>(a.pixels);
   Image<std::uint16_t> deep(13, 12, 3);
   Image<float> real(13, 12, 4);
-  for (int y = 0; y < 12; ++y) {
-    for (int x = 0; x < 13; ++x) {
-      for (int c = 0; c < 4; ++c) {
-        real.at(x, y, c) = c == 3 ? 0.5F : static_cast<float>(bytes.at(x, y, c)) / 255;
-        if (c < 3) {
-          deep.at(x, y, c) = static_cast<std::uint16_t>(bytes.at(x, y, c) * 257);
-        }
+  for (const auto [x, y] : positions_of(13, 12)) {
+    for (int c = 0; c < 4; ++c) {
+      real.at(x, y, c) = c == 3 ? 0.5F : static_cast<float>(bytes.at(x, y, c)) / 255;
+      if (c < 3) {
+        deep.at(x, y, c) = static_cast<std::uint16_t>(bytes.at(x, y, c) * 257);
       }
     }
   }
   const Photograph deep_picture{std::move(deep)};
   const Photograph real_picture{std::move(real)};
-  EXPECT_LT(evaluate_view(a, deep_picture, serial()).mean_absolute_difference, 1e-4);
-  EXPECT_LT(evaluate_view(deep_picture, real_picture, serial()).mean_absolute_difference, 1e-4);
+  EXPECT_LT(evaluate_view(a, deep_picture, execution()).mean_absolute_difference, 1e-4);
+  EXPECT_LT(evaluate_view(deep_picture, real_picture, execution()).mean_absolute_difference, 1e-4);
 }
 
 TEST(ViewEvaluation, GreyIsComparedWithLuma) {
   const Photograph colour = picture(4, 4, 3, [](int, int, int c) { return c == 0 ? 200 : 0; });
   const Photograph grey = picture(4, 4, 1, [](int, int, int) { return 0; });
-  EXPECT_NEAR(evaluate_view(colour, grey, serial()).mean_absolute_difference, 0.299 * 200, 1e-9);
+  EXPECT_NEAR(evaluate_view(colour, grey, execution()).mean_absolute_difference, 0.299 * 200, 1e-9);
 }
 
 TEST(ViewEvaluation, SameForAnyExecution) {
   const Photograph a = random_picture(61, 53, 3, 8);
   const Photograph b = random_picture(61, 53, 3, 9);
-  const ViewScores expected = evaluate_view(a, b, serial());
+  const ViewScores expected = evaluate_view(a, b, execution());
   for (const int threads : {1, 2, 5}) {
     Execution execution({.threads = threads});
     const ViewScores scores = evaluate_view(a, b, execution);
@@ -175,9 +154,8 @@ TEST(ViewEvaluation, SizesMustAgree) {
   const Photograph a = random_picture(4, 3, 1, 1);
   const Photograph b = random_picture(3, 4, 1, 1);
   const Mask mask(3, 4);
-  EXPECT_THROW((void)evaluate_view(a, b, serial()), Error);
-  EXPECT_THROW((void)evaluate_view(a, a, serial(), mask.view()), Error);
+  EXPECT_THROW((void)evaluate_view(a, b, execution()), Error);
+  EXPECT_THROW((void)evaluate_view(a, a, execution(), mask.view()), Error);
 }
 
-}  // namespace view_evaluation_test
-}  // namespace vantage
+}  // namespace vantage::view_evaluation_test

@@ -1,17 +1,5 @@
 #include "engine/synthesis/view_finisher.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <random>
-#include <utility>
-#include <vector>
-
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/synthesis/pair_warpers.h"
@@ -20,9 +8,9 @@
 #include "kernels/hole_fill/hole_fill.h"
 #include "kernels/soft_edges/soft_edges.h"
 #include "kernels/view_blend/view_blend.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace view_finisher_test {
+namespace vantage::view_finisher_test {
 
 using Bytes = Image<std::uint8_t>;
 
@@ -39,24 +27,20 @@ struct ObjectScene {
   ObjectScene() {
     std::mt19937 random(51);
     Bytes pattern(kWidth + 40, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth + 40; ++x) {
-        pattern.at(x, y) = static_cast<std::uint8_t>(40 + random() % 20);
-      }
+    for (const auto [x, y] : positions_of(kWidth + 40, kHeight)) {
+      pattern.at(x, y) = static_cast<std::uint8_t>(40 + random() % 20);
     }
     const auto render = [&](int background_shift, int first, DisparityMap& map) {
       Bytes image(kWidth, kHeight);
-      for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x) {
-          const int background = pattern.at(x + background_shift, y);
-          const bool object = x >= first && x < first + 20;
-          // The background beside the object is the mixture, as the maps see it.
-          const bool mixed = x == first - 1 || x == first + 20;
-          map.at(x, y) = object ? 12.0F : 2.0F;
-          image.at(x, y) = static_cast<std::uint8_t>(object  ? 220
-                                                     : mixed ? (background + 220) / 2
-                                                             : background);
-        }
+      for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+        const int background = pattern.at(x + background_shift, y);
+        const bool object = x >= first && x < first + 20;
+        // The background beside the object is the mixture, as the maps see it.
+        const bool mixed = x == first - 1 || x == first + 20;
+        map.at(x, y) = object ? 12.0F : 2.0F;
+        image.at(x, y) = static_cast<std::uint8_t>(object  ? 220
+                                                   : mixed ? (background + 220) / 2
+                                                           : background);
       }
       return Photograph{std::move(image)};
     };
@@ -65,9 +49,8 @@ struct ObjectScene {
   }
 
   [[nodiscard]] SynthesizedView view(const SynthesisOptions& options, double view_x) const {
-    Execution execution({.threads = 2});
     SynthesizedView result;
-    ViewSynthesizer(options, execution)
+    ViewSynthesizer(options, execution())
         .synthesize({left, right, left_disparity.view(), right_disparity.view()}, view_x, result);
     return result;
   }
@@ -148,14 +131,12 @@ TEST(ViewFinisher, LeavesNoGhostOfAnOutline) {
       const SynthesizedView hard = scene.view({.holes = holes, .soft_edges = false}, view_x);
       const auto first = static_cast<int>(40 - 12 * view_x);
       int ghosts = 0;
-      for (int y = 0; y < ObjectScene::kHeight; ++y) {
-        for (int x = 0; x < ObjectScene::kWidth; ++x) {
-          // All but the outline itself, which is mixed.
-          if (x < first - 1 || x > first + 20) {
-            ASSERT_LT(pixels_of(soft).at(x, y), 75)
-                << view_x << ": " << x << ", " << y << ", way " << static_cast<int>(holes);
-            ghosts += pixels_of(hard).at(x, y) > 75 ? 1 : 0;
-          }
+      for (const auto [x, y] : positions_of(ObjectScene::kWidth, ObjectScene::kHeight)) {
+        // All but the outline itself, which is mixed.
+        if (x < first - 1 || x > first + 20) {
+          ASSERT_LT(pixels_of(soft).at(x, y), 75)
+              << view_x << ": " << x << ", " << y << ", way " << static_cast<int>(holes);
+          ghosts += pixels_of(hard).at(x, y) > 75 ? 1 : 0;
         }
       }
       EXPECT_GT(ghosts, 0);
@@ -185,11 +166,9 @@ TEST(ViewFinisher, SourcesOfHardEdgesAreNoneInHolesOnly) {
     std::array<int, 256> counts{};
     for (const double view_x : {0.5, 1.5, -0.5}) {
       const SynthesizedView view = scene.view({.holes = holes, .soft_edges = false}, view_x);
-      for (int y = 0; y < ObjectScene::kHeight; ++y) {
-        for (int x = 0; x < ObjectScene::kWidth; ++x) {
-          ++counts[view.sources.at(x, y)];
-          ASSERT_EQ(view.sources.at(x, y) == 0, view.holes.at(x, y) == 255);
-        }
+      for (const auto [x, y] : positions_of(ObjectScene::kWidth, ObjectScene::kHeight)) {
+        ++counts[view.sources.at(x, y)];
+        ASSERT_EQ(view.sources.at(x, y) == 0, view.holes.at(x, y) == 255);
       }
     }
     for (const std::size_t value : {0, 85, 170, 255}) {
@@ -218,5 +197,4 @@ TEST(ViewFinisher, InpaintsEmptyRows) {
   }
 }
 
-}  // namespace view_finisher_test
-}  // namespace vantage
+}  // namespace vantage::view_finisher_test

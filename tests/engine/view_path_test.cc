@@ -1,18 +1,10 @@
 #include "engine/view_geometry/view_pose.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
 #include <Eigen/Geometry>
 
-#include "engine/error.h"
-#include "tests/engine/io_test_support.h"
-
-namespace vantage {
-namespace view_path_test {
-
-using test::error_of;
-using testing::HasSubstr;
+namespace vantage::view_path_test {
 
 std::string refusal(std::string_view text) {
   return error_of([&] { parse_view_path(text).validate(); });
@@ -101,5 +93,4 @@ TEST(ViewPath, OfTwoKindsOrSizesIsRefused) {
             "view path has cameras with and without a size, expected it for all or for none");
 }
 
-}  // namespace view_path_test
-}  // namespace vantage
+}  // namespace vantage::view_path_test

@@ -1,18 +1,11 @@
 #include "engine/view_geometry/view_pose.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <random>
 
-#include "engine/error.h"
 #include "tests/engine/calibration_cases.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace view_pose_test {
-
-using test::random_rotation;
-using test::uniform;
+namespace vantage::view_pose_test {
 
 PosedCamera some_camera(std::mt19937& random) {
   PosedCamera camera{.width_px = 64, .height_px = 48};
@@ -115,5 +108,4 @@ TEST(ViewPose, CamerasNeedACalibratedPair) {
   EXPECT_EQ(new_view(BaselinePosition{0.5, 0.5}, nullptr, 4, 3).height_px, 3);
 }
 
-}  // namespace view_pose_test
-}  // namespace vantage
+}  // namespace vantage::view_pose_test

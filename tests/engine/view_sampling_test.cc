@@ -1,19 +1,11 @@
 #include "engine/synthesis/view_sampling.h"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <random>
-#include <vector>
 
 #include "engine/synthesis/view_synthesizer.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace view_sampling_test {
+namespace vantage::view_sampling_test {
 
 DisparityMap flat_map(int width, int height, float d) {
   DisparityMap map(width, height);
@@ -151,8 +143,7 @@ void expect_plain_means(int channels, const ViewSampling& sampling) {
   const SynthesizedView fine = random_view<T>(random, samples * width, samples * height, channels);
   const auto& fine_image = std::get<Image<T>>(fine.image.pixels);
   SynthesizedView view;
-  Execution execution({.threads = 2});
-  reduce_view(fine, sampling, view, execution);
+  reduce_view(fine, sampling, view, execution());
   const auto& image = std::get<Image<T>>(view.image.pixels);
   ASSERT_EQ(image.width(), width);
   ASSERT_EQ(image.height(), height);
@@ -160,32 +151,29 @@ void expect_plain_means(int channels, const ViewSampling& sampling) {
   const std::vector<double> weights = plain_weights(sampling);
   const double unit = 255 / static_cast<double>(kGreyLevelsPerUnit<T>);
   int holes = 0;
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      int sources = 0;
-      for (int k = 0; k < samples * samples; ++k) {
-        sources |= fine.sources.at(samples * x + k % samples, samples * y + k / samples);
-      }
-      EXPECT_EQ(view.sources.at(x, y), sources);
-      EXPECT_EQ(view.holes.at(x, y), sources == 0 ? 255 : 0);
-      holes += sources == 0 ? 1 : 0;
-      for (int c = 0; c < channels; ++c) {
-        double sum = 0;
-        for (int j = -1; j <= samples; ++j) {
-          for (int i = -1; i <= samples; ++i) {
-            const int column = std::clamp(samples * x + i, 0, fine_image.width() - 1);
-            const int line = std::clamp(samples * y + j, 0, fine_image.height() - 1);
-            sum += weights[static_cast<std::size_t>(i + 1)] *
-                   weights[static_cast<std::size_t>(j + 1)] *
-                   static_cast<double>(fine_image.at(column, line, c));
-          }
+  for (const auto [x, y] : positions_of(width, height)) {
+    int sources = 0;
+    for (int k = 0; k < samples * samples; ++k) {
+      sources |= fine.sources.at(samples * x + k % samples, samples * y + k / samples);
+    }
+    EXPECT_EQ(view.sources.at(x, y), sources);
+    EXPECT_EQ(view.holes.at(x, y), sources == 0 ? 255 : 0);
+    holes += sources == 0 ? 1 : 0;
+    for (int c = 0; c < channels; ++c) {
+      double sum = 0;
+      for (int j = -1; j <= samples; ++j) {
+        for (int i = -1; i <= samples; ++i) {
+          const int column = std::clamp(samples * x + i, 0, fine_image.width() - 1);
+          const int line = std::clamp(samples * y + j, 0, fine_image.height() - 1);
+          sum += weights[static_cast<std::size_t>(i + 1)] *
+                 weights[static_cast<std::size_t>(j + 1)] *
+                 static_cast<double>(fine_image.at(column, line, c));
         }
-        if (std::is_integral_v<T>) {
-          sum = std::clamp(sum, 0.0, unit);
-        }
-        EXPECT_NEAR(static_cast<double>(image.at(x, y, c)), sum,
-                    std::is_integral_v<T> ? 0.51 : 1e-5);
       }
+      if (std::is_integral_v<T>) {
+        sum = std::clamp(sum, 0.0, unit);
+      }
+      EXPECT_NEAR(static_cast<double>(image.at(x, y, c)), sum, std::is_integral_v<T> ? 0.51 : 1e-5);
     }
   }
   EXPECT_DOUBLE_EQ(view.hole_fraction, holes / 45.0);
@@ -203,17 +191,14 @@ TEST(ViewSampling, FineStripesDoNotAlias) {
   const int width = 160;
   const int height = 40;
   Image<std::uint8_t> stripes(width, height, 1);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      stripes.at(x, y) = static_cast<std::uint8_t>(
-          std::lround(128 + 100 * std::cos(2 * std::numbers::pi * 0.47 * x)));
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    stripes.at(x, y) = static_cast<std::uint8_t>(
+        std::lround(128 + 100 * std::cos(2 * std::numbers::pi * 0.47 * x)));
   }
   const Photograph photograph{std::move(stripes)};
   const DisparityMap map = flat_map(width, height, 4);
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   SynthesizedView view;
-  ViewSynthesizer({}, execution)
+  ViewSynthesizer({}, execution())
       .synthesize({photograph, photograph, map.view(), map.view()}, zoomed(width, height, 0.5),
                   view);
   const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
@@ -222,5 +207,4 @@ TEST(ViewSampling, FineStripesDoNotAlias) {
   }
 }
 
-}  // namespace view_sampling_test
-}  // namespace vantage
+}  // namespace vantage::view_sampling_test

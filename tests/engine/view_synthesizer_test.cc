@@ -1,44 +1,13 @@
 #include "engine/synthesis/view_synthesizer.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstring>
-#include <limits>
-#include <random>
-#include <string>
-#include <thread>
-#include <utility>
-#include <vector>
-
-#include "engine/error.h"
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
-#include "engine/simd.h"
+#include "tests/engine/engine_test.h"
+#include "tests/engine/every_execution.h"
 #include "tests/engine/plain_synthesis.h"
+#include "tests/engine/synthesis_pair.h"
 
-namespace vantage {
-namespace view_synthesizer_test {
-
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-struct Pair {
-  Photograph left;
-  Photograph right;
-  DisparityMap left_disparity;
-  DisparityMap right_disparity;
-
-  void synthesize(const SynthesisOptions& options, double view_x, Execution& execution,
-                  SynthesizedView& view) const {
-    ViewSynthesizer(options, execution)
-        .synthesize({left, right, left_disparity.view(), right_disparity.view()}, view_x, view);
-  }
-};
+namespace vantage::view_synthesizer_test {
 
 DisparityMap random_map(std::mt19937& random, int width, int height) {
   DisparityMap map(width, height);
@@ -58,51 +27,22 @@ DisparityMap random_map(std::mt19937& random, int width, int height) {
   return map;
 }
 
-// Textures with some likeness, so that the regression has something to find.
+using Pair = SynthesisPair;
+
 template <typename T>
 Pair random_pair(std::mt19937& random, int width, int height, int channels) {
-  const double unit = 255.0 / static_cast<double>(kGreyLevelsPerUnit<T>) / 255.0;
-  const auto picture = [&](double gain) {
-    Image<T> image(width, height, channels);
-    for (int y = 0; y < height; ++y) {
-      for (int k = 0; k < width * channels; ++k) {
-        const double grey = gain * (30.0 + 12 * (y % 16)) + static_cast<double>(random() % 20);
-        image.row(y)[k] = static_cast<T>(grey * unit);
-      }
-    }
-    return Photograph{std::move(image)};
-  };
-  return {picture(1.0), picture(0.8), random_map(random, width, height),
-          random_map(random, width, height)};
-}
-
-std::vector<std::uint8_t> bytes_of(const SynthesizedView& view) {
-  std::vector<std::uint8_t> bytes;
-  const auto append = [&]<typename T>(const Image<T>& image) {
-    for (int y = 0; y < image.height(); ++y) {
-      const auto* row = reinterpret_cast<const std::uint8_t*>(image.row(y));
-      bytes.insert(bytes.end(), row,
-                   row + sizeof(T) * static_cast<std::size_t>(image.width() * image.channels()));
-    }
-  };
-  std::visit(append, view.image.pixels);
-  append(view.holes);
-  append(view.sources);
-  const auto* fit = reinterpret_cast<const std::uint8_t*>(view.intensity.data());
-  bytes.insert(bytes.end(), fit, fit + sizeof(view.intensity));
-  return bytes;
+  return random_synthesis_pair<T>(random, width, height, channels, 0.8,
+                                  [&] { return random_map(random, width, height); });
 }
 
 template <typename T>
 class ViewSynthesizerDepth : public testing::Test {};
-using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(ViewSynthesizerDepth, PixelTypes);
 
 TYPED_TEST(ViewSynthesizerDepth, EqualsPlainTranscription) {
   constexpr int kSizes[][2] = {{1, 1}, {1, 23}, {29, 1}, {2, 3}, {37, 19}, {131, 17}};
   constexpr double kViews[] = {-0.6, 0.0, 0.37, 0.5, 1.0, 1.8};
   std::mt19937 random(21);
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   int variant = 0;
   for (const auto& [width, height] : kSizes) {
     for (const int channels : {1, 3, 4}) {
@@ -118,7 +58,7 @@ TYPED_TEST(ViewSynthesizerDepth, EqualsPlainTranscription) {
         options.soft_edges = false;  // view_finisher_test.cc
         ++variant;
         SynthesizedView view;
-        pair.synthesize(options, view_x, execution, view);
+        pair.synthesize(options, view_x, execution(), view);
         const auto plain =
             plain_synthesis<TypeParam>({std::get<Image<TypeParam>>(pair.left.pixels).view(),
                                         std::get<Image<TypeParam>>(pair.right.pixels).view(),
@@ -129,17 +69,14 @@ TYPED_TEST(ViewSynthesizerDepth, EqualsPlainTranscription) {
         const double unit = 1 / static_cast<double>(kGreyLevelsPerUnit<TypeParam>);
         const double tolerance = std::is_same_v<TypeParam, float> ? 1e-5 : 0.5 + 1e-4 * unit;
         int holes = 0;
-        for (int y = 0; y < height; ++y) {
-          for (int x = 0; x < width; ++x) {
-            const bool hole = plain.hole_at(x, y);
-            holes += hole ? 1 : 0;
-            ASSERT_EQ(view.holes.at(x, y), hole ? 255 : 0);
-            for (int c = 0; c < channels; ++c) {
-              ASSERT_NEAR(static_cast<double>(image.at(x, y, c)), plain.value_at(x, y, c),
-                          tolerance)
-                  << width << "×" << height << ", view " << view_x << ", pixel " << x << ", " << y
-                  << ", variant " << variant - 1;
-            }
+        for (const auto [x, y] : positions_of(width, height)) {
+          const bool hole = plain.hole_at(x, y);
+          holes += hole ? 1 : 0;
+          ASSERT_EQ(view.holes.at(x, y), hole ? 255 : 0);
+          for (int c = 0; c < channels; ++c) {
+            ASSERT_NEAR(static_cast<double>(image.at(x, y, c)), plain.value_at(x, y, c), tolerance)
+                << width << "×" << height << ", view " << view_x << ", pixel " << x << ", " << y
+                << ", variant " << variant - 1;
           }
         }
         EXPECT_DOUBLE_EQ(view.hole_fraction, static_cast<double>(holes) / (width * height));
@@ -154,21 +91,18 @@ TYPED_TEST(ViewSynthesizerDepth, EqualsPlainTranscription) {
 
 TYPED_TEST(ViewSynthesizerDepth, CamerasReproduceTheirImages) {
   std::mt19937 random(22);
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   for (const int channels : {1, 3, 4}) {
     const Pair pair = random_pair<TypeParam>(random, 77, 20, channels);
     for (const WarpColour warp : {WarpColour::kOnePass, WarpColour::kForward}) {
       for (const int camera : {0, 1}) {
         SynthesizedView view;
-        pair.synthesize({.warp = warp, .gamma = std::nullopt}, camera, execution, view);
+        pair.synthesize({.warp = warp, .gamma = std::nullopt}, camera, execution(), view);
         const Photograph& source = camera == 0 ? pair.left : pair.right;
         const DisparityMap& map = camera == 0 ? pair.left_disparity : pair.right_disparity;
-        for (int y = 0; y < 20; ++y) {
-          for (int x = 0; x < 77; ++x) {
-            for (int c = 0; c < channels && !std::isnan(map.at(x, y)); ++c) {
-              ASSERT_EQ(std::get<Image<TypeParam>>(view.image.pixels).at(x, y, c),
-                        std::get<Image<TypeParam>>(source.pixels).at(x, y, c));
-            }
+        for (const auto [x, y] : positions_of(77, 20)) {
+          for (int c = 0; c < channels && !std::isnan(map.at(x, y)); ++c) {
+            ASSERT_EQ(std::get<Image<TypeParam>>(view.image.pixels).at(x, y, c),
+                      std::get<Image<TypeParam>>(source.pixels).at(x, y, c));
           }
         }
       }
@@ -179,34 +113,21 @@ TYPED_TEST(ViewSynthesizerDepth, CamerasReproduceTheirImages) {
 TEST(ViewSynthesizer, IdenticalForAnyExecutionAndInstructionSet) {
   std::mt19937 random(23);
   const Pair pair = random_pair<std::uint8_t>(random, 203, 70, 3);
-  Execution serial({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   const SynthesisOptions variants[] = {
       {}, {.warp = WarpColour::kForward, .soft_edges = false}, {.holes = HoleFilling::kInpaint}};
   for (const SynthesisOptions& options : variants) {
-    SynthesizedView view;
-    pair.synthesize(options, 0.4, serial, view);
-    const std::vector<std::uint8_t> expected = bytes_of(view);
-    for (const auto kind : {scheduler::ExecutorKind::kTbb, scheduler::ExecutorKind::kOpenMp}) {
-      for (const int threads : {1, 2, 7}) {
-        Execution execution({.threads = threads, .executor = kind});
-        pair.synthesize(options, 0.4, execution, view);
-        ASSERT_EQ(bytes_of(view), expected) << threads << " threads";
-      }
-    }
-    for (const std::string& name : available_instruction_sets()) {
-      force_instruction_set(name);
-      pair.synthesize(options, 0.4, serial, view);
-      ASSERT_EQ(bytes_of(view), expected) << name;
-    }
-    force_instruction_set("best");
+    expect_equal_for_every_execution([&](Execution& execution) {
+      SynthesizedView view;
+      pair.synthesize(options, 0.4, execution, view);
+      return bytes_of(view);
+    });
   }
 }
 
 TEST(ViewSynthesizer, ServesSeveralThreadsAtOnce) {
   std::mt19937 random(24);
   const Pair pair = random_pair<std::uint8_t>(random, 90, 40, 3);
-  Execution execution({.threads = 2});
-  const ViewSynthesizer synthesizer({}, execution);
+  const ViewSynthesizer synthesizer({}, execution());
   std::array<SynthesizedView, 4> views;
   std::vector<std::thread> threads;
   for (SynthesizedView& view : views) {
@@ -226,8 +147,7 @@ TEST(ViewSynthesizer, ServesSeveralThreadsAtOnce) {
 
 // The views of a scene that is known exactly: from its exact maps to the picture rendered there.
 TEST(ViewSynthesizer, ExactMapsGiveTheRenderedView) {
-  Execution execution({.threads = 2});
-  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution);
+  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 2}, execution());
   const SceneRendering left = scene.render({0, 0}, 0);
   const SceneRendering right = scene.render({1, 0}, 0);
   for (const double view_x : {0.25, 0.5, -0.3}) {
@@ -235,18 +155,16 @@ TEST(ViewSynthesizer, ExactMapsGiveTheRenderedView) {
     const Mask not_left = scene.occlusion({view_x, 0}, {0, 0}, 0);
     const Mask not_right = scene.occlusion({view_x, 0}, {1, 0}, 0);
     Mask visible(320, 240);
-    for (int y = 0; y < 240; ++y) {
-      for (int x = 0; x < 320; ++x) {
-        visible.at(x, y) = not_left.at(x, y) != 0 && not_right.at(x, y) != 0 ? 0 : 255;
-      }
+    for (const auto [x, y] : positions_of(320, 240)) {
+      visible.at(x, y) = not_left.at(x, y) != 0 && not_right.at(x, y) != 0 ? 0 : 255;
     }
     for (const WarpColour warp : {WarpColour::kOnePass, WarpColour::kForward}) {
       SynthesizedView view;
-      ViewSynthesizer({.warp = warp}, execution)
+      ViewSynthesizer({.warp = warp}, execution())
           .synthesize({left.image, right.image, left.disparity.view(), right.disparity.view()},
                       view_x, view);
       const ViewScores scores =
-          evaluate_view(view.image, truth.image, execution,
+          evaluate_view(view.image, truth.image, execution(),
                         ImageView<const std::uint8_t>(std::as_const(visible).view()));
       EXPECT_LE(scores.mean_absolute_difference,
                 warp == WarpColour::kForward && view_x < 0 ? 3.0 : 2.0)
@@ -272,12 +190,11 @@ TEST(ViewSynthesizer, FindsTheIntensityTransform) {
       right.at(x, y) = 0.05F + 0.8F * left.at(std::min(x + 8, width - 1), y);
     }
   }
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   SynthesizedView view;
   const Photograph left_photograph{left.copy()};
   const Photograph right_photograph{std::move(right)};
   const auto synthesize = [&](const SynthesisOptions& options) {
-    ViewSynthesizer(options, execution)
+    ViewSynthesizer(options, execution())
         .synthesize({left_photograph, right_photograph, map.view(), map.view()}, 0.5, view);
   };
   synthesize({.gamma = 1.0});
@@ -302,10 +219,9 @@ TEST(ViewSynthesizer, AnEmptyRowTakesTheNearest) {
   std::fill_n(map.row(1), 3, 0.0F);
   std::fill_n(map.row(4), 3, 0.0F);
   const Photograph photograph{std::move(image)};
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   for (const HoleFilling holes : {HoleFilling::kMirror, HoleFilling::kSpread, HoleFilling::kNone}) {
     SynthesizedView view;
-    ViewSynthesizer({.holes = holes}, execution)
+    ViewSynthesizer({.holes = holes}, execution())
         .synthesize({photograph, photograph, map.view(), map.view()}, 0.5, view);
     std::vector<int> column;
     for (int y = 0; y < 6; ++y) {
@@ -317,7 +233,7 @@ TEST(ViewSynthesizer, AnEmptyRowTakesTheNearest) {
   }
   map.fill(kUnknown);
   SynthesizedView view;
-  ViewSynthesizer({}, execution)
+  ViewSynthesizer({}, execution())
       .synthesize({photograph, photograph, map.view(), map.view()}, 0.5, view);
   EXPECT_EQ(view.hole_fraction, 1);
   EXPECT_EQ(std::get<Image<std::uint8_t>>(view.image.pixels).at(2, 3), 0);
@@ -325,12 +241,11 @@ TEST(ViewSynthesizer, AnEmptyRowTakesTheNearest) {
 
 TEST(ViewSynthesizer, RefusesWhatDoesNotFit) {
   std::mt19937 random(26);
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   const Pair pair = random_pair<std::uint8_t>(random, 8, 6, 3);
   const Pair other_size = random_pair<std::uint8_t>(random, 9, 6, 3);
   const Pair grey = random_pair<std::uint8_t>(random, 8, 6, 1);
   const Pair deep = random_pair<std::uint16_t>(random, 8, 6, 3);
-  const ViewSynthesizer synthesizer({}, execution);
+  const ViewSynthesizer synthesizer({}, execution());
   SynthesizedView view;
   const auto left_map = pair.left_disparity.view();
   const auto bad_map = other_size.left_disparity.view();
@@ -347,38 +262,33 @@ TEST(ViewSynthesizer, RefusesWhatDoesNotFit) {
                          std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(attempt(pair.right, left_map, left_map, x), UsageError) << x;
   }
-  EXPECT_THROW(ViewSynthesizer({.gamma = 1.5}, execution), UsageError);
-  EXPECT_THROW(ViewSynthesizer({.gamma = std::nan("")}, execution), UsageError);
-  EXPECT_THROW(ViewSynthesizer({.disparity_gradient_limit_px = -1}, execution), UsageError);
+  EXPECT_THROW(ViewSynthesizer({.gamma = 1.5}, execution()), UsageError);
+  EXPECT_THROW(ViewSynthesizer({.gamma = std::nan("")}, execution()), UsageError);
+  EXPECT_THROW(ViewSynthesizer({.disparity_gradient_limit_px = -1}, execution()), UsageError);
   EXPECT_THROW(
       ViewSynthesizer({.disparity_gradient_limit_px = std::numeric_limits<double>::infinity()},
-                      execution),
+                      execution()),
       UsageError);
 }
 
 TEST(ViewSynthesizer, WildDisparitiesDoNoHarm) {
   std::mt19937 random(27);
-  Execution execution({.threads = 1, .executor = scheduler::ExecutorKind::kSerial});
   Pair pair = random_pair<float>(random, 65, 9, 3);
   const float wild[] = {1e38F,     -1e38F,
                         5000.5F,   std::numeric_limits<float>::infinity(),
                         -5000.25F, -std::numeric_limits<float>::infinity(),
                         1e-38F,    kUnknown};
-  for (int y = 0; y < 9; ++y) {
-    for (int x = 0; x < 65; ++x) {
-      pair.left_disparity.at(x, y) = wild[random() % 8];
-      pair.right_disparity.at(x, y) = wild[random() % 8];
-    }
+  for (const auto [x, y] : positions_of(65, 9)) {
+    pair.left_disparity.at(x, y) = wild[random() % 8];
+    pair.right_disparity.at(x, y) = wild[random() % 8];
   }
   for (const double x : {-16.0, 0.0, 0.5, 1.0, 16.0}) {
     for (const double limit : {0.0, 1.0, 1e30}) {
       for (const WarpColour warp : {WarpColour::kOnePass, WarpColour::kForward}) {
         SynthesizedView view;
-        pair.synthesize({.warp = warp, .disparity_gradient_limit_px = limit}, x, execution, view);
-        for (int y = 0; y < 9; ++y) {
-          for (int k = 0; k < 65 * 3; ++k) {
-            ASSERT_TRUE(std::isfinite(std::get<Image<float>>(view.image.pixels).row(y)[k]));
-          }
+        pair.synthesize({.warp = warp, .disparity_gradient_limit_px = limit}, x, execution(), view);
+        for (const auto [k, y] : positions_of(65 * 3, 9)) {
+          ASSERT_TRUE(std::isfinite(std::get<Image<float>>(view.image.pixels).row(y)[k]));
         }
       }
     }
@@ -388,9 +298,8 @@ TEST(ViewSynthesizer, WildDisparitiesDoNoHarm) {
 template <typename T>
 void expect_given_fits_to_act(int channels) {
   std::mt19937 random(28);
-  Execution execution({.threads = 3});
   const Pair pair = random_pair<T>(random, 67, 23, channels);
-  const ViewSynthesizer synthesizer({}, execution);
+  const ViewSynthesizer synthesizer({}, execution());
   const auto synthesize = [&](const ViewSynthesizer& with, double x,
                               const std::array<IntensityFit, 4>* fit) {
     SynthesizedView view;
@@ -409,7 +318,7 @@ void expect_given_fits_to_act(int channels) {
     std::array<IntensityFit, 4> other = own.intensity;
     other[0].offset += 30;
     EXPECT_NE(bytes_of(synthesize(synthesizer, x, &other)), bytes_of(own));
-    const ViewSynthesizer plain({.match_intensities = false}, execution);
+    const ViewSynthesizer plain({.match_intensities = false}, execution());
     EXPECT_EQ(bytes_of(synthesize(plain, x, &other)), bytes_of(synthesize(synthesizer, x, &other)));
     // The sums lead to the fit.
     const kernels::IntensitySums sums = synthesizer.intensity_sums(
@@ -433,9 +342,8 @@ TEST(ViewSynthesizer, TakesAGivenFit) {
 /// Rows of small images are kept between the two passes, those of large ones warped again.
 TEST(ViewSynthesizer, LargeImagesAreNoOtherCase) {
   std::mt19937 random(29);
-  Execution execution({.threads = 2});
   const Pair pair = random_pair<std::uint8_t>(random, 1000, 870, 3);  // 40 bytes a pixel: 33 MiB
-  const ViewSynthesizer synthesizer({}, execution);
+  const ViewSynthesizer synthesizer({}, execution());
   const auto synthesize = [&](const std::array<IntensityFit, 4>* fit) {
     SynthesizedView view;
     synthesizer.synthesize(
@@ -450,5 +358,4 @@ TEST(ViewSynthesizer, LargeImagesAreNoOtherCase) {
   EXPECT_EQ(fit_channels(sums, 3, 1), own.intensity);
 }
 
-}  // namespace view_synthesizer_test
-}  // namespace vantage
+}  // namespace vantage::view_synthesizer_test

@@ -2,17 +2,11 @@
 
 #include "engine/profiling/waiting_causes.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "engine/profiling/timeline.h"
 #include "scheduler/trace_summary.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace waiting_causes_test {
+namespace vantage::waiting_causes_test {
 
 using scheduler::SpanKind;
 using scheduler::SpanRecord;
@@ -161,5 +155,4 @@ TEST(Timeline, JoinsWhatIsTooShort) {
   EXPECT_GT(timeline_of(trace, 100'000)[0].spans.size(), 900U);
 }
 
-}  // namespace waiting_causes_test
-}  // namespace vantage
+}  // namespace vantage::waiting_causes_test

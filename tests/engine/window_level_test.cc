@@ -1,28 +1,13 @@
 #include "engine/matching/windows/window_level.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <random>
-#include <utility>
-#include <vector>
-
 #include "engine/image/tile_mask.h"
 #include "engine/matching/aggregation/edge_weights.h"
 #include "kernels/candidate_windows.h"
 #include "kernels/census/census.h"
 #include "kernels/intensity_diffusion/intensity_diffusion.h"
-#include "tests/engine/identical_maps.h"
+#include "tests/engine/engine_test.h"
 
-namespace vantage {
-namespace window_level_test {
+namespace vantage::window_level_test {
 
 using Bytes = Image<std::uint8_t>;
 constexpr int kAbsent = std::numeric_limits<std::int16_t>::min();
@@ -84,10 +69,8 @@ class GivenBeliefs final : public CoarseBeliefs {
 /// contrast: grey levels from one value to the next.
 Photograph random_photograph(int width, int height, int contrast, std::mt19937& random) {
   Bytes pixels(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      pixels.at(x, y) = static_cast<std::uint8_t>(random() % 8 * static_cast<unsigned>(contrast));
-    }
+  for (const auto [x, y] : positions_of(width, height)) {
+    pixels.at(x, y) = static_cast<std::uint8_t>(random() % 8 * static_cast<unsigned>(contrast));
   }
   return {std::move(pixels)};
 }
@@ -140,10 +123,8 @@ class PlainLevel {
     }
     diffuse_intensities(parameters_.iterations);
     DisparityMap result(columns_, rows_);
-    for (int y = 0; y < rows_; ++y) {
-      for (int x = 0; x < columns_; ++x) {
-        result.at(x, y) = winner(x, y);
-      }
+    for (const auto [x, y] : positions_of(columns_, rows_)) {
+      result.at(x, y) = winner(x, y);
     }
     return result;
   }
@@ -181,22 +162,20 @@ class PlainLevel {
     const int spacing = kind_.spacing;
     const int first = spacing * coarse_.disparity_min() - geometry_.disparity_min;
     const int steps = static_cast<int>(std::ceil(256 * coarse_.nats_per_step() * steps_));
-    for (int y = 0; y < rows_; ++y) {
-      for (int x = 0; x < columns_; ++x) {
-        Pixel& pixel = pixels_[static_cast<std::size_t>(y * columns_ + x)];
-        for (const int winner : guesses(x / 2, y / 2)) {
-          const int window_start =
-              std::clamp(spacing * winner + first - 3, 0, std::max(0, geometry_.count - 8));
-          Window window;
-          for (int d = window_start; d < std::min(window_start + 8, geometry_.count); ++d) {
-            const int place = d - first;
-            const int low = coarse_.energy(x / 2, y / 2, place / spacing);
-            const int high =
-                place % spacing == 0 ? low : coarse_.energy(x / 2, y / 2, place / spacing + 1);
-            window[d] = std::max(0, ceiling_ - (((low + high + 1) / 2 * steps) >> 8));
-          }
-          pixel.push_back(window);
+    for (const auto [x, y] : positions_of(columns_, rows_)) {
+      Pixel& pixel = pixels_[static_cast<std::size_t>(y * columns_ + x)];
+      for (const int winner : guesses(x / 2, y / 2)) {
+        const int window_start =
+            std::clamp(spacing * winner + first - 3, 0, std::max(0, geometry_.count - 8));
+        Window window;
+        for (int d = window_start; d < std::min(window_start + 8, geometry_.count); ++d) {
+          const int place = d - first;
+          const int low = coarse_.energy(x / 2, y / 2, place / spacing);
+          const int high =
+              place % spacing == 0 ? low : coarse_.energy(x / 2, y / 2, place / spacing + 1);
+          window[d] = std::max(0, ceiling_ - (((low + high + 1) / 2 * steps) >> 8));
         }
+        pixel.push_back(window);
       }
     }
   }
@@ -263,25 +242,24 @@ class PlainLevel {
     int sum = 0;
     int of_prior = 0;
     const int side = kind_.side;
-    for (int row = side * y; row < side * (y + 1); ++row) {
-      for (int column = side * x; column < side * (x + 1); ++column) {
-        const int v = std::min(row, geometry_height() - 1);
-        // Columns outside have the code of the last one.
-        const int own = std::min(column, geometry_.width - 1);
-        const int other = std::clamp(geometry_.partner(column, candidate), 0, geometry_.width - 1);
-        int distance = 0;
-        for (const kernels::PixelOffset& offset : kernels::kRayCensusOffsets) {
-          distance +=
-              std::abs(number(reference_, own, v, offset) - number(partner_, other, v, offset));
-        }
-        const double deviations = distance / (parameters_.sigma_measurement * kind_.thresholds);
-        const double epsilon = parameters_.epsilon_measurement;
-        const double nats =
-            outlier_nats_ +
-            std::log((1 - epsilon) * std::exp(-deviations * deviations / 2) + epsilon);
-        sum += static_cast<int>(std::lround(steps_ * std::max(0.0, nats)));
-        of_prior += prior_steps(own, v, candidate);
+    for (const auto [column, row] :
+         positions_of({side * x, side * (x + 1)}, {side * y, side * (y + 1)})) {
+      const int v = std::min(row, geometry_height() - 1);
+      // Columns outside have the code of the last one.
+      const int own = std::min(column, geometry_.width - 1);
+      const int other = std::clamp(geometry_.partner(column, candidate), 0, geometry_.width - 1);
+      int distance = 0;
+      for (const kernels::PixelOffset& offset : kernels::kRayCensusOffsets) {
+        distance +=
+            std::abs(number(reference_, own, v, offset) - number(partner_, other, v, offset));
       }
+      const double deviations = distance / (parameters_.sigma_measurement * kind_.thresholds);
+      const double epsilon = parameters_.epsilon_measurement;
+      const double nats =
+          outlier_nats_ +
+          std::log((1 - epsilon) * std::exp(-deviations * deviations / 2) + epsilon);
+      sum += static_cast<int>(std::lround(steps_ * std::max(0.0, nats)));
+      of_prior += prior_steps(own, v, candidate);
     }
     return std::min(255, sum + of_prior);
   }
@@ -342,28 +320,26 @@ class PlainLevel {
 
   void iterate() {
     std::vector<Pixel> next;
-    for (int y = 0; y < rows_; ++y) {
-      for (int x = 0; x < columns_; ++x) {
-        const Pixel of_pixel = totals(x, y);
-        const int max = max_of(of_pixel);
-        Pixel pixel;
-        for (const Window& window : of_pixel) {
-          Window smoothed;
-          for (const auto& [candidate, total] : window) {
-            int best = total;
-            for (const auto& [other, of_other] : window) {
-              const double k = (candidate - other) / parameters_.sigma_prior;
-              const int rise = static_cast<int>(std::nearbyint(4 * steps_ * k * k / 2));
-              if (rise < 4 * ceiling_) {
-                best = std::max(best, of_other - rise);
-              }
+    for (const auto [x, y] : positions_of(columns_, rows_)) {
+      const Pixel of_pixel = totals(x, y);
+      const int max = max_of(of_pixel);
+      Pixel pixel;
+      for (const Window& window : of_pixel) {
+        Window smoothed;
+        for (const auto& [candidate, total] : window) {
+          int best = total;
+          for (const auto& [other, of_other] : window) {
+            const double k = (candidate - other) / parameters_.sigma_prior;
+            const int rise = static_cast<int>(std::nearbyint(4 * steps_ * k * k / 2));
+            if (rise < 4 * ceiling_) {
+              best = std::max(best, of_other - rise);
             }
-            smoothed[candidate] = (std::max(0, best - max + 4 * ceiling_) + 2) / 4;
           }
-          pixel.push_back(smoothed);
+          smoothed[candidate] = (std::max(0, best - max + 4 * ceiling_) + 2) / 4;
         }
-        next.push_back(pixel);
+        pixel.push_back(smoothed);
       }
+      next.push_back(pixel);
     }
     pixels_ = std::move(next);
   }
@@ -452,7 +428,7 @@ void expect_regions_equal(const WindowLevelInput& input, const DisparityMap& who
       }
     });
   }
-  EXPECT_TRUE(test::identical(map, expected));
+  EXPECT_TRUE(identical(map, expected));
 }
 
 TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
@@ -487,19 +463,15 @@ TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
       const GivenBeliefs coarse({(extent.columns + 1) / 2, (extent.rows + 1) / 2}, coarse_min,
                                 spacing == 1 ? size.count : size.count / 2 + 2, random);
       Image<float> prior_px(size.width, size.height);
-      for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) {
-          // Some unknown, some outside the range.
-          prior_px.at(x, y) = random() % 4 == 0 ? std::numeric_limits<float>::quiet_NaN()
-                                                : static_cast<float>(size.disparity_min) - 2 +
-                                                      static_cast<float>(random() % 16) * 0.75F;
-        }
+      for (const auto [x, y] : positions_of(size.width, size.height)) {
+        // Some unknown, some outside the range.
+        prior_px.at(x, y) = random() % 4 == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                              : static_cast<float>(size.disparity_min) - 2 +
+                                                    static_cast<float>(random() % 16) * 0.75F;
       }
       Image<float> grey(extent.columns, extent.rows);
-      for (int y = 0; y < grey.height(); ++y) {
-        for (int x = 0; x < grey.width(); ++x) {
-          grey.at(x, y) = static_cast<float>(random() % 4 * 8);
-        }
+      for (const auto [x, y] : positions_of(grey)) {
+        grey.at(x, y) = static_cast<float>(random() % 4 * 8);
       }
       const auto margins = window_margins(geometry);
       CostImage of_reference;
@@ -525,15 +497,13 @@ TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
       for (Execution* const execution : {&one, &three}) {
         DisparityMap map(extent.columns, extent.rows);
         search_windows(input, Subpixel::kParabola, {.disparity_px = map.view()}, *execution);
-        for (int y = 0; y < map.height(); ++y) {
-          for (int x = 0; x < map.width(); ++x) {
-            const float value = map.at(x, y);
-            ASSERT_TRUE(std::isnan(value) ? std::isnan(expected.at(x, y))
-                                          : value == expected.at(x, y))
-                << size.width << "x" << size.height << ", side " << kind.side << ", direction "
-                << direction << ", pixel " << x << ", " << y << ": " << value << ", expected "
-                << expected.at(x, y);
-          }
+        for (const auto [x, y] : positions_of(map)) {
+          const float value = map.at(x, y);
+          ASSERT_TRUE(std::isnan(value) ? std::isnan(expected.at(x, y))
+                                        : value == expected.at(x, y))
+              << size.width << "x" << size.height << ", side " << kind.side << ", direction "
+              << direction << ", pixel " << x << ", " << y << ": " << value << ", expected "
+              << expected.at(x, y);
         }
         expect_regions_equal(input, map, *execution);
       }
@@ -541,5 +511,4 @@ TEST(WindowLevel, EqualsPlainTranscriptionForAnyExecution) {
   }
 }
 
-}  // namespace window_level_test
-}  // namespace vantage
+}  // namespace vantage::window_level_test

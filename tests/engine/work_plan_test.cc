@@ -1,15 +1,9 @@
 #include "engine/sequence/work_plan.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/engine/engine_test.h"
 
-#include <set>
+namespace vantage::work_plan_test {
 
-namespace vantage {
-namespace work_plan_test {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 using Past = FrameDependence::Past;
 
 std::vector<FrameRun> plan(const FrameSelection& selection, FrameDependence dependence,
@@ -105,5 +99,4 @@ TEST(WorkPlan, ChunksNearTheLargestNumber) {
   EXPECT_EQ(selection.chunk_of(2147483646).end, 2147483647);
 }
 
-}  // namespace work_plan_test
-}  // namespace vantage
+}  // namespace vantage::work_plan_test
