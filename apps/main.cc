@@ -16,6 +16,7 @@
 #include "apps/inputs/input_limits.h"
 #include "apps/process/process_setup.h"
 #include "apps/process/tell.h"
+#include "apps/settings/option_reference.h"
 #include "apps/settings/suggestions.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
@@ -60,7 +61,8 @@ std::string help_json() {
   const vantage::SettingValue document = {{"version", vantage::build_info().version},
                                           {"summary", kSummary},
                                           {"exit_codes", kExitCodes},
-                                          {"commands", list}};
+                                          {"commands", list},
+                                          {"combinations", vantage::apps::combination_reference()}};
   return document.dump(2) + '\n';
 }
 

@@ -163,7 +163,7 @@ int run_benchmark(int argc, char** argv) {
   line.option("--folder", settings.folder, "Keep the generated video here for the next run");
   line.json(settings.json);
   line.parse(argc, argv);
-  const auto& names = preset_names();
+  const auto& names = names_of(MatchPreset{});
   const auto preset = std::ranges::find(names, settings.preset,
                                         [](const auto& named) { return std::string(named.first); });
   if (preset == names.end()) {

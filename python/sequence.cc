@@ -287,7 +287,7 @@ class Sequence {
     read_pose_files(job.views, read_toml);
     complete_sequence(job, false);
     require_outputs_of_frames(job.sequence);
-    check_sequence(job, settings, false);
+    check_sequence(job, settings);
     if (job.input.stereo == "-") {
       throw UsageError("stereo is -, expected a file: 'vantage run' reads standard input");
     }

@@ -115,7 +115,7 @@ py::tuple Matcher::volume(const ImageArguments& arguments, const py::dict& keywo
   add_volume_settings(settings, output);
   set_options(settings, options);
   output.file = "array";  // there is an output
-  check_volume(output, setup_.options, settings);
+  check_volume(output, setup_.options);
   MatchedImages images = arguments.images();
   MemoryVolume volume(output.rows, max_bytes);
   on_threads_of(*setup_.execution, [&] {

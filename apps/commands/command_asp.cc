@@ -49,7 +49,8 @@ void add_asp_settings(Settings& settings, AspJob& job) {
   output.required = true;
   output.path = PathRole::kOther;
   settings.start_group("Matching");
-  settings.choice("preset", job.preset, preset_names(), "Parameters, as for 'vantage match'");
+  settings.choice("preset", job.preset, names_of(MatchPreset{}),
+                  "Parameters, as for 'vantage match'");
   settings.integer("disp-min", job.min_px, "PX",
                    "Minimum disparity, in the sign of --sign; auto: found in the images");
   settings.integer("disp-max", job.max_px, "PX", "Maximum disparity; auto: found in the images");

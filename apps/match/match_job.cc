@@ -8,10 +8,11 @@
 #include "apps/inputs/input_limits.h"
 #include "apps/inputs/rectification_check.h"
 #include "apps/process/outputs.h"
+#include "engine/combinations/combinations.h"
 #include "engine/error.h"
 #include "engine/io/maps/map_formats.h"
 #include "engine/io/maps/map_io.h"
-#include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/options/match_values.h"
 #include "engine/matching/search/match_inputs.h"
 
 namespace vantage::apps {
@@ -88,42 +89,18 @@ void add_file_settings(Settings& settings, MatchJob& job) {
   add_rectification_check_setting(settings, job.check_rectification);
 }
 
-void check_several(const MatchJob& job, const Settings& settings) {
-  check_baselines(settings, job.baselines, 1 + job.more.size());
+void check_several(const MatchJob& job) {
+  check_baselines(job.baselines, 1 + job.more.size());
   std::vector<OtherView> others;
   for (const double baseline : job.baselines) {
     others.push_back({nullptr, baseline});
   }
   require_different_baselines(others);
-  if (job.match.reference == Side::kRight) {
-    throw UsageError(
-        "--reference right cannot be used with --baselines: the first image is the reference");
-  }
-  if (!job.output_right.empty() || !job.unmatched_right.empty()) {
-    throw UsageError(
-        fmt::format("--{} cannot be used with --baselines: only the first image has a map",
-                    job.output_right.empty() ? "unmatched-right" : "output-right"));
-  }
-  if (job.match.disparities_y) {
-    throw UsageError(
-        "--disparities-y cannot be used with --baselines: cameras on one line have no vertical "
-        "disparities");
-  }
 }
 
 void check_posterior(const MatchJob& job, FileChecks& files) {
   if (!job.wants_posterior()) {
     return;
-  }
-  const char* const option =
-      job.posterior_mean.empty() ? "--posterior-variance" : "--posterior-mean";
-  if (!has_likelihoods(job.match.resolved())) {
-    throw UsageError(fmt::format("{} cannot be used with {}: only the aggregation bayes has p(d)",
-                                 option, job.match.chosen()));
-  }
-  if (job.match.disparities_y) {
-    throw UsageError(
-        fmt::format("{} cannot be used with --disparities-y: p is one of displacements", option));
   }
   if (has_extension(job.posterior_variance, {".png"})) {
     throw UsageError(
@@ -138,38 +115,8 @@ void check_cyclopean(const MatchJob& job, FileChecks& files) {
   if (!job.wants_cyclopean()) {
     return;
   }
-  if (job.has_several() || job.match.resolved().selection != Selection::kSymmetric) {
-    throw UsageError(fmt::format("--{} is given, expected it with --selection symmetric only",
-                                 job.cyclopean.empty() ? "cyclopean-occlusion" : "cyclopean"));
-  }
   files.add_output(job.cyclopean, "--cyclopean", OutputKind::kDisparity);
   files.add_output(job.cyclopean_occlusion, "--cyclopean-occlusion", OutputKind::kMask);
-}
-
-void check_unrectified(const MatchJob& job, const Settings& settings) {
-  if (job.unrectified.empty()) {
-    settings.refuse_idle({"rectified-pixels"}, "without --unrectified");
-    return;
-  }
-  settings.refuse_idle({"cross-check-level"}, "with --unrectified: whole maps are compared");
-  settings.refuse_idle({"tuning", "no-tuning"},
-                       "with --unrectified: tuning is for rectified pairs");
-  settings.refuse_idle({"no-rectification-check"}, "with --unrectified");
-  const auto refuse = [](bool is_given, std::string_view option, std::string_view why) {
-    if (is_given) {
-      throw UsageError(fmt::format("--{} cannot be used with --unrectified: {}", option, why));
-    }
-  };
-  refuse(job.has_several(), "baselines", "a calibration is of two cameras");
-  refuse(job.vertical, "vertical", "the calibration says where the cameras are");
-  refuse(job.match.disparities_y.has_value(), "disparities-y", "epipolar lines are known");
-  refuse(job.match.resolved().selection == Selection::kSymmetric, "selection symmetric",
-         "pixels of both photographs lie on different epipolar lines");
-  refuse(job.depth.has_geometry(), job.depth.calibration.empty() ? "focal-length" : "calibration",
-         "depths belong to rectified pixels, which --calibration alone makes");
-  refuse(!job.volume.file.empty(), "volume", "candidates differ by fractions from pixel to pixel");
-  refuse(job.wants_posterior(), "posterior-mean and --posterior-variance",
-         "candidates differ by fractions from pixel to pixel");
 }
 
 }  // namespace
@@ -221,27 +168,11 @@ void check(const MatchJob& job, const Settings& settings) {
   job.match.validate();
   job.common.execution.validate();
   job.depth.validate(job.vertical);
-  check_unrectified(job, settings);
+  OptionValues values = settings.option_values();
+  values.take(values_of(job.match));
+  refuse_combinations(CombinationScope::kMatchJob, values);
   if (job.has_several()) {
-    check_several(job, settings);
-  } else if (job.match.reference == Side::kRight &&
-             !(job.output_right.empty() && job.unmatched_right.empty())) {
-    throw UsageError(
-        fmt::format("--{} cannot be used with --reference right: {} belongs to the right map",
-                    job.output_right.empty() ? "unmatched-right" : "output-right",
-                    job.output_right.empty() ? "--unmatched" : "--output"));
-  }
-  if (job.tuning.ignored) {
-    settings.refuse_idle({"tuning"}, "with --no-tuning");
-  }
-  if (job.depth.resolution_file.empty() && job.common.report.empty()) {
-    settings.refuse_idle({"disparity-resolution"}, "without --depth-resolution and --report");
-  }
-  if (job.depth.calibration.empty()) {
-    settings.refuse_idle({"kept-outline"}, "without --calibration");
-    if (job.unrectified.empty()) {
-      settings.refuse_idle({"kitti-cameras"}, "without --calibration");
-    }
+    check_several(job);
   }
   for (const auto& [option, file, content] :
        {std::tuple{"confidence", &job.confidence, "confidences"},
@@ -266,7 +197,7 @@ void check(const MatchJob& job, const Settings& settings) {
   files.add_output(job.unmatched_right, "--unmatched-right", OutputKind::kMask);
   files.add_output(job.preview, "--preview", OutputKind::kPhotograph);
   files.add_output(job.volume.file, "--volume", OutputKind::kVolume);
-  check_volume(job.volume, job.match, settings);
+  check_volume(job.volume, job.match);
   check_posterior(job, files);
   check_cyclopean(job, files);
   check_common_files(job.common, files);

@@ -12,7 +12,7 @@
 #include "apps/run/stream_run.h"
 #include "apps/settings/depth_video_settings.h"
 #include "apps/settings/toml_file.h"
-#include "engine/error.h"
+#include "engine/combinations/combinations.h"
 #include "engine/io/maps/map_formats.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/frame_step_setting.h"
@@ -115,62 +115,6 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
                                  "bar on a terminal, else lines");
 }
 
-/// Refuses options of outputs that are not written. `reads_rate`: --fps has a use without a video.
-void refuse_idle_outputs(const Settings& settings, const SequenceOptions& sequence,
-                         bool reads_rate) {
-  using Output = SequenceOutput;
-  const auto saves_any = [&](std::initializer_list<Output> outputs) {
-    return std::ranges::any_of(outputs, [&](Output output) { return sequence.saves(output); });
-  };
-  const bool has_depth_video = sequence.saves(Output::kDepthVideo);
-  if (sequence.video.empty() && !has_depth_video) {
-    settings.refuse_idle({"crf", "no-sound"}, "without --video");
-    if (!reads_rate) {
-      settings.refuse_idle({"fps"}, "without --video");
-    }
-  }
-  if (!has_depth_video) {
-    settings.refuse_idle({"depth-range", "depth-codec"}, "where --save has no depth-video");
-  }
-  if (!saves_any({Output::kDisparity, Output::kRightDisparity, Output::kConfidence,
-                  Output::kPosteriorMean, Output::kPosteriorVariance, Output::kCyclopean,
-                  Output::kDepthResolution})) {
-    settings.refuse_idle({"format"},
-                         "where --save has no disparity, right-disparity, confidence, "
-                         "posterior-mean, posterior-variance, cyclopean, depth-resolution");
-  }
-  if (!saves_any({Output::kDisparity, Output::kConfidence, Output::kUnmatched, Output::kPreview,
-                  Output::kPosteriorMean, Output::kPosteriorVariance, Output::kDepth,
-                  Output::kDepthResolution, Output::kCloud, Output::kMesh, Output::kDepthVideo,
-                  Output::kComfort})) {
-    settings.refuse_idle({"reference"},
-                         "where --save has no disparity, confidence, unmatched, preview, "
-                         "posterior-mean, posterior-variance, depth, depth-resolution, cloud, "
-                         "mesh, depth-video, comfort");
-  }
-  if (!sequence.saves(Output::kDepth)) {
-    settings.refuse_idle({"depth-format"}, "where --save has no depth");
-  }
-  if (!sequence.saves(Output::kDepthResolution)) {
-    settings.refuse_idle({"disparity-resolution"}, "where --save has no depth-resolution");
-  }
-  if (!sequence.is_metric()) {
-    settings.refuse_idle(
-        {"baseline", "focal-length", "principal-point", "doffs", "calibration-unit"},
-        "where --save has no depth, depth-resolution, cloud, mesh");
-  }
-  if (!sequence.saves(Output::kDepth) && !sequence.saves_points()) {
-    settings.refuse_idle({"max-depth"}, "where --save has no depth, cloud, mesh");
-  }
-  if (!sequence.saves_points()) {
-    refuse_idle_cloud_options(settings, "where --save has no cloud, mesh");
-    settings.refuse_idle({"poses"}, "where --save has no cloud, mesh");
-  }
-  if (!sequence.saves(Output::kPreview)) {
-    settings.refuse_idle({"preview-range"}, "where --save has no preview");
-  }
-}
-
 }  // namespace
 
 void add_run_settings(Settings& settings, RunJob& job) {
@@ -201,43 +145,12 @@ void add_run_settings(Settings& settings, RunJob& job) {
 void complete(RunJob& job, const Settings& settings) {
   read_pose_files(job.views, read_toml_document);
   complete_sequence(job, reads_stream(job) || writes_stream(job));
-  refuse_idle_outputs(settings, job.sequence, writes_stream(job) || job.input.raw_video);
-  check_stream(job, settings);
+  refuse_combinations(CombinationScope::kRun, values_of(job, settings));
+  check_stream(job);
   job.input.raw_rate = job.frame_rate.value_or(FrameRate());
-  if (job.sequence.search_range_per_shot && settings.is_set("disparities") &&
-      !job.sequence.match.disparities_auto) {
-    throw UsageError("search-range is shot, expected film with a range in --disparities");
-  }
-  if (job.sequence.search_range_per_shot && job.memory_bytes) {
-    throw UsageError(
-        settings.is_set("search-range")
-            ? "search-range is shot, expected film with --memory, which plans for one range"
-            : "--memory plans for one range of disparities, but each shot of a film is searched in "
-              "its own; expected --search-range film too, or a range in --disparities");
-  }
-  if (job.tuning.ignored) {
-    settings.refuse_idle({"tuning"}, "with --no-tuning");
-  }
-  if (job.memory_bytes) {
-    settings.refuse_idle({"tuning"}, "with --memory, for which the cost model plans");
-  }
-  check_sequence(job, settings, job.resume);
-  if (!job.unrectified.empty()) {
-    settings.refuse_idle({"tuning", "no-tuning"},
-                         "with --unrectified: tuning is for rectified pairs");
-    settings.refuse_idle({"no-rectification-check", "already-rectified"}, "with --unrectified");
-  }
+  check_sequence(job, settings);
   require_disparity_resolution(job.sequence.disparity_step_px);
   job.common.execution.validate();
-  if (job.overwrite && (job.resume || job.force)) {
-    throw UsageError(fmt::format("--overwrite and --{} are both given, expected one of them",
-                                 job.resume ? "resume" : "force"));
-  }
-  if (job.overwrite && job.shard) {
-    throw UsageError(
-        "--overwrite with --shard would remove what other shards have done; remove the folder "
-        "first, or use another one");
-  }
 }
 
 void add_run_outputs(const SequenceLayout& layout, bool has_comfort, const std::string& option,

@@ -23,50 +23,10 @@ bool reads_stream(const RunJob& job) { return job.input.stereo == kStream; }
 
 bool writes_stream(const RunJob& job) { return job.output == kStream; }
 
-namespace {
-
-/// Frames of standard input are there once.
-void check_input_stream(const RunJob& job) {
-  if (job.resume || job.force) {
-    throw UsageError(fmt::format(
-        "--{} is given, but the input is standard input, which cannot be read again; --overwrite "
-        "starts again",
-        job.resume ? "resume" : "force"));
-  }
-  if (job.shard) {
-    throw UsageError(
-        "--shard is given and --stereo is -, expected a file: standard input is read once");
-  }
-  const SequenceOptions& options = job.sequence;
-  const char* per_shot = options.search_range_per_shot    ? "search-range"
-                         : options.preview_range_per_shot ? "preview-range"
-                         : options.depth_scale.scope == DepthVideoScale::Scope::kShot
-                             ? "depth-range"
-                         : options.intensity_fit == FitScope::kShot ? "intensity-fit"
-                                                                    : nullptr;
-  if (per_shot != nullptr) {
-    throw UsageError(fmt::format(
-        "--{} is shot and --stereo is -, expected another value: it needs all frames of a "
-        "shot before the first; store the stream in a file",
-        per_shot));
-  }
-}
-
-}  // namespace
-
-void check_stream(const RunJob& job, const Settings& settings) {
-  if (reads_stream(job)) {
-    check_input_stream(job);
-  } else {
-    settings.refuse_idle({"raw-video"}, "without --stereo -");
-  }
+void check_stream(const RunJob& job) {
   if (!writes_stream(job)) {
-    settings.refuse_idle({"stream-format"}, "without --output -");
     return;
   }
-  settings.refuse_idle({"resume", "overwrite", "force", "shard", "video", "measure-flicker", "crf",
-                        "no-sound", "depth-codec", "format"},
-                       "with --output -");
   const SequenceOptions& options = job.sequence;
   const SequenceLayout layout(job.output, options);
   if (options.saves(SequenceOutput::kComfort) || layout.streams().size() != 1 ||

@@ -11,8 +11,8 @@ bool reads_stream(const RunJob& job);
 /// Whether the run writes standard output ("-").
 bool writes_stream(const RunJob& job);
 
-/// Throws UsageError for settings that do not go with a stream; `job` is otherwise complete.
-void check_stream(const RunJob& job, const Settings& settings);
+/// Throws UsageError for outputs that a stream cannot hold; `job` is otherwise complete.
+void check_stream(const RunJob& job);
 
 /// Writes the only output of the run to standard output, as its frames are made. Returns the exit
 /// code.

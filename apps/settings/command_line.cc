@@ -160,10 +160,10 @@ bool read_command_line(Settings& settings, const std::vector<std::string>& argum
   try {
     app.parse(std::move(reversed));
   } catch (const CLI::CallForHelp&) {
-    print_help(app, options, settings.all(), settings.short_help());
+    print_help(app, options, settings, settings.short_help());
     return false;
   } catch (const CLI::CallForAllHelp&) {
-    print_help(app, options, settings.all(), {});
+    print_help(app, options, settings, {});
     return false;
   } catch (const CLI::ParseError& error) {
     // An unknown option is the likely cause of CLI11's error.

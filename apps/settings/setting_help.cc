@@ -76,8 +76,9 @@ CLI::Option* add_option(CLI::App& app, const Setting& setting) {
   return option;
 }
 
-void print_help(CLI::App& app, const std::vector<CLI::Option*>& options,
-                const std::deque<Setting>& settings, const std::vector<std::string_view>& names) {
+void print_help(CLI::App& app, const std::vector<CLI::Option*>& options, const Settings& of_command,
+                const std::vector<std::string_view>& names) {
+  const std::deque<Setting>& settings = of_command.all();
   if (!names.empty()) {
     for (CLI::Option* const option : app.get_options()) {
       option->group("Options");
@@ -90,6 +91,12 @@ void print_help(CLI::App& app, const std::vector<CLI::Option*>& options,
     options[i]->required(settings[i].required);  // only now: settings are also read from a file
     if (!names.empty() && std::ranges::find(names, settings[i].name) == names.end()) {
       options[i]->group("");  // hidden
+    }
+    if (names.empty()) {
+      const std::vector<std::string> others = not_with(settings[i], of_command);
+      const std::string text = fmt::format("Not with {}", fmt::join(others, ", "));
+      options[i]->description(options[i]->get_description() +
+                              (others.empty() ? "" : '\n' + wrapped(text)));
     }
   }
   std::string text = app.help();

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +21,9 @@ std::string wrapped(const std::string& text, std::size_t columns = 70);
 CLI::Option* add_option(CLI::App& app, const Setting& setting);
 
 /// Prints the help of `app`, whose `options` are those of `settings`: the settings in `names` under
-/// one heading, or all in their groups when there are no names.
-void print_help(CLI::App& app, const std::vector<CLI::Option*>& options,
-                const std::deque<Setting>& settings, const std::vector<std::string_view>& names);
+/// one heading, or all in their groups, with what they do not go with, when there are no names.
+void print_help(CLI::App& app, const std::vector<CLI::Option*>& options, const Settings& settings,
+                const std::vector<std::string_view>& names);
 
 /// Appends the options of `app` that every command has, which are not those of its settings.
 void append_general_options(const CLI::App& app, const std::vector<CLI::Option*>& of_settings,

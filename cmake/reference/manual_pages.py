@@ -25,6 +25,8 @@ def option_body(option):
     lines = roff(option["help"]).split("\n")
     if default_text(option):
         lines.append(f"Default: {roff(default_text(option))}")
+    if "not_with" in option:
+        lines.append("Not with " + roff(", ".join(option["not_with"])))
     # Lines of the help are kept apart: some are tables.
     return "\n.br\n".join(line for line in lines if line)
 

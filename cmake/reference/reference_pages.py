@@ -23,7 +23,27 @@ def option_row(option):
         name = code(f"{short}--{option['name']}{value}")
     default = code(default_text(option)) if default_text(option) else ""
     required = " (required)" if option["required"] else ""
-    return f"| {name} | {inline(option['help'])}{required} | {default} |"
+    others = ", ".join(code(other) for other in option.get("not_with", []))
+    not_with = f"<br>Not with {others}" if others else ""
+    return f"| {name} | {inline(option['help'])}{required}{not_with} | {default} |"
+
+
+def combinations_page(rows):
+    """What does not go together, and why; rows of one option and reason are joined."""
+    joined = {}
+    for row in rows:
+        key = "not_with" if "not_with" in row else "only_with"
+        place = joined.setdefault((row["option"], key, row["reason"]), [[], False])
+        place[0] += [code(text) for text in row[key] if code(text) not in place[0]]
+        place[1] = place[1] or row["preset_gives_way"]
+    lines = ["# Options that do not go together", "",
+             "A command refuses them with one line that says why. Where a preset's value gives way, "
+             "only what you set yourself is refused.", "",
+             "| option | goes | because | preset gives way |", "|---|---|---|---|"]
+    for (option, key, reason), (others, gives_way) in joined.items():
+        goes = ("not with " if key == "not_with" else "only with ") + ", ".join(others)
+        lines.append(f"| {code(option)} | {goes} | {inline(reason)} | {'yes' if gives_way else ''} |")
+    return "\n".join([*lines, ""])
 
 
 def command_page(command, exit_codes):
@@ -45,5 +65,6 @@ def reference_pages(description):
             for command in description["commands"]]
     pages["index.md"] = "\n".join(
         ["# Commands", "", f"Of Vantage {description['version']}; `vantage COMMAND --help-all` "
-         "prints the same.", "", "| command | what it does |", "|---|---|", *rows, ""])
+         "prints the same. What does not go together is [one table](combinations.md).", "", "| command | what it does |", "|---|---|", *rows, ""])
+    pages["combinations.md"] = combinations_page(description["combinations"])
     return pages

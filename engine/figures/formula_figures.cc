@@ -70,15 +70,15 @@ FigureContent make_prior(const FigureRun& run) {
                 .y_from_zero = true,
                 .markers = false,
                 .series = {}};
-  for (const auto& [name, prior] : prior_names()) {
+  for (const auto& [name, prior] : names_of(Prior{})) {
     table.columns.emplace_back(name);
     plot.series.push_back({std::string(name), {}, {}});
   }
   for (int step = -kReach; step <= kReach; ++step) {
     const double x = step / kStepsPerUnit;
     table.add(x);
-    for (std::size_t k = 0; k < prior_names().size(); ++k) {
-      parameters.prior = prior_names()[k].second;
+    for (std::size_t k = 0; k < names_of(Prior{}).size(); ++k) {
+      parameters.prior = names_of(Prior{})[k].second;
       const double value = prior_penalty(parameters, x);
       plot.series[k].x.push_back(x);
       plot.series[k].y.push_back(value);

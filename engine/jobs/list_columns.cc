@@ -5,28 +5,16 @@
 #include <algorithm>
 #include <set>
 
+#include "engine/combinations/combinations.h"
 #include "engine/error.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/maps/map_io.h"
+#include "engine/sequence/sequence_values.h"
 
 namespace vantage {
 namespace {
 
 namespace fs = std::filesystem;
-
-void refuse(bool is_used, std::string_view option, std::string_view column, std::string_view why) {
-  if (is_used) {
-    throw UsageError(fmt::format("{} cannot be used with a list of pairs with the column {}: {}",
-                                 option, column, why));
-  }
-}
-
-void check_outputs_of_cameras(const SequenceJob& job) {
-  const SequenceOptions& sequence = job.sequence;
-  refuse(!job.unrectified.empty(), "--unrectified", "calibration", "its file is of all pairs");
-  refuse(!sequence.views.empty() || sequence.saves(SequenceOutput::kStereo),
-         "--save views or stereo", "calibration", "a view is defined by one pair of cameras");
-}
 
 /// Throws UsageError where the options cannot search the range of one pair.
 void check_range(const MatchOptions& options, DisparityRange range, const std::string& images) {
@@ -40,19 +28,23 @@ void check_range(const MatchOptions& options, DisparityRange range, const std::s
   }
 }
 
-void check_ranges(const SequenceJob& job) {
-  const SequenceOptions& sequence = job.sequence;
-  constexpr std::string_view kColumn = "min-disparity";
-  refuse(sequence.temporal.weight > 0, "--temporal-prior", kColumn,
-         "disparities are passed from frame to frame");
-  refuse(sequence.temporal.reuse != Reuse::kNone, "--reuse", kColumn,
-         "disparities are passed from frame to frame");
-  refuse(sequence.saves(SequenceOutput::kDepthVideo) &&
-             sequence.depth_scale.scope != DepthVideoScale::Scope::kGiven,
-         "--save depth-video without --depth-range MIN:MAX", kColumn,
-         "its levels stand for one range");
-  refuse(sequence.search_range_per_shot, "--search-range shot", kColumn,
-         "the list has the ranges, expected --search-range film");
+/// What the columns do not go together with.
+void check_options(const SequenceJob& job, const ListColumns& columns) {
+  OptionValues values = values_of(job.sequence);
+  values.set("kept-outline", job.rectification.kept_outline);
+  if (job.kitti_cameras) {
+    values.set("kitti-cameras", "given");
+  }
+  if (!job.calibration.empty()) {
+    values.set("calibration", job.calibration);
+  }
+  if (!columns.calibrations.empty()) {
+    values.set("column calibration", "given");
+  }
+  if (columns.widest) {
+    values.set("column min-disparity", "given");
+  }
+  refuse_combinations(CombinationScope::kPairList, values);
 }
 
 /// The cameras of a KITTI file are `chosen`, else those that the folders of the images name.
@@ -112,19 +104,10 @@ ListColumns check_list_columns(const SequenceJob& job, const PairSource& pairs) 
       }
     }
   }
-  if (!columns.calibrations.empty()) {
-    check_outputs_of_cameras(job);
-  } else if (job.cameras_file().empty()) {
+  if (columns.calibrations.empty() && job.cameras_file().empty()) {
     job.rig.validate("");
-    if (job.rectification.kept_outline > 0 || job.kitti_cameras) {
-      throw UsageError(
-          fmt::format("--{} has no effect without --calibration",
-                      job.rectification.kept_outline > 0 ? "kept-outline" : "kitti-cameras"));
-    }
   }
-  if (columns.widest) {
-    check_ranges(job);
-  }
+  check_options(job, columns);
   return columns;
 }
 

@@ -6,13 +6,14 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/combinations/combinations.h"
 #include "engine/error.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/frame_step_setting.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/pair_source_settings.h"
-#include "engine/options/synthesis_settings.h"
 #include "engine/sequence/memory_plan.h"
+#include "engine/sequence/sequence_values.h"
 
 namespace vantage {
 namespace {
@@ -54,59 +55,6 @@ void apply_step_of_frames(SequenceJob& job) {
                                  *job.step_of_frames));
   }
   job.input.every = step;
-}
-
-/// Several cameras per frame.
-void check_several(const SequenceJob& job, const Settings& settings, bool is_continued) {
-  if (job.sequence.baselines.empty() && job.input.more.empty()) {
-    return;
-  }
-  if (job.input.left.empty() && !is_continued) {
-    throw UsageError("--baselines has no effect without --left and --right");
-  }
-  check_baselines(settings, job.sequence.baselines, 1 + job.input.more.size());
-  if (!job.calibration.empty()) {
-    throw UsageError(
-        "--calibration cannot be used with --baselines: it rectifies the images of two cameras "
-        "only");
-  }
-}
-
-/// Refuses options without effect.
-void refuse_idle_options(const SequenceOptions& sequence, const Settings& settings) {
-  using Output = SequenceOutput;
-  if (!sequence.saves(Output::kStereo)) {
-    settings.refuse_idle({"stereo-views", "stereo-packing"}, "where --save has no stereo");
-  }
-  if (!std::ranges::any_of(
-          std::array{Output::kViews, Output::kHoles, Output::kSources, Output::kStereo},
-          [&](Output output) { return sequence.saves(output); })) {
-    settings.refuse_idle({"intensity-fit", "warp", "holes", "soft-edges", "gamma", "gradient-limit",
-                          "no-intensity-matching"},
-                         "where --save has no views, holes, sources, stereo");
-  }
-  check_combining(settings, sequence.synthesis);
-  if (!sequence.synthesis.match_intensities) {
-    settings.refuse_idle({"intensity-fit"}, "with --no-intensity-matching");
-  }
-  if (!sequence.temporal.uses_past() && !sequence.measure_flicker) {
-    settings.refuse_idle({"temporal-threshold"},
-                         "without --temporal-prior, --reuse and --measure-flicker");
-  }
-}
-
-/// The options of the sequence are checked with it.
-void check_unrectified(const SequenceJob& job, const Settings& settings) {
-  if (job.unrectified.empty()) {
-    settings.refuse_idle({"rectified-pixels"}, "without --unrectified");
-    return;
-  }
-  settings.refuse_idle({"cross-check-level"}, "with --unrectified: whole maps are compared");
-  if (!job.calibration.empty()) {
-    throw UsageError(
-        "--calibration and --unrectified are both given, expected one of them: both are of the "
-        "cameras");
-  }
 }
 
 }  // namespace
@@ -264,26 +212,36 @@ void complete_sequence(SequenceJob& job, bool is_streamed) {
   sequence.validate();
 }
 
-void check_sequence(SequenceJob& job, const Settings& settings, bool is_continued) {
-  refuse_idle_options(job.sequence, settings);
-  check_several(job, settings, is_continued);
-  check_unrectified(job, settings);
+OptionValues values_of(const SequenceJob& job, const Settings& settings) {
+  OptionValues values = settings.option_values();
+  values.take(values_of(job.sequence));
+  for (const auto& [option, file] :
+       {std::pair{"calibration", &job.calibration}, std::pair{"unrectified", &job.unrectified}}) {
+    if (!file->empty()) {
+      values.set(option, *file);
+    }
+  }
+  // A list of pairs may have them; checked when it has been read.
+  if (!job.input.pairs.empty() && job.cameras_file().empty() && !job.rig.replaces_calibration()) {
+    values.set("column calibration", "possible");
+  }
+  return values;
+}
+
+void check_sequence(SequenceJob& job, const Settings& settings) {
+  const OptionValues values = values_of(job, settings);
+  refuse_combinations(CombinationScope::kJob, values);
+  if (!job.sequence.baselines.empty() || !job.input.more.empty()) {
+    check_baselines(job.sequence.baselines, 1 + job.input.more.size());
+  }
   check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.cameras_file().empty());
   apply_step_of_frames(job);
   job.input.validate();
   job.rectification.validate();
-  // A list of pairs may have them; checked when it has been read.
-  const bool may_be_listed =
-      !job.input.pairs.empty() && job.cameras_file().empty() && !job.rig.replaces_calibration();
+  const bool may_be_listed = values.find("column calibration") != nullptr;
   job.rig.validate(may_be_listed ? job.input.pairs : job.cameras_file());
   if (job.sequence.is_metric() && !may_be_listed) {
     job.rig.require_given(job.cameras_file(), "save depth, depth-resolution, cloud or mesh");
-  }
-  if (job.rectification.kept_outline > 0 && job.calibration.empty() && !may_be_listed) {
-    throw UsageError("--kept-outline has no effect without --calibration");
-  }
-  if (job.kitti_cameras && job.cameras_file().empty() && !may_be_listed) {
-    throw UsageError("--kitti-cameras has no effect without --calibration");
   }
   if (job.in_flight && (*job.in_flight < 1 || *job.in_flight > kMaxFramesInFlight)) {
     throw UsageError(fmt::format("--in-flight is {}, expected a number from 1 to {}",

@@ -65,8 +65,11 @@ void add_in_flight_setting(Settings& settings, SequenceJob& job);
 /// `is_streamed`: frames cannot be looked at before the run. Throws UsageError for invalid fields.
 void complete_sequence(SequenceJob& job, bool is_streamed);
 
+/// The values in force by option, for rules that concern several.
+OptionValues values_of(const SequenceJob& job, const Settings& settings);
+
 /// Throws UsageError for other invalid fields, combinations and options without effect; applies N
-/// of --frames A-B:N. `is_continued`: the input is not given again.
-void check_sequence(SequenceJob& job, const Settings& settings, bool is_continued);
+/// of --frames A-B:N.
+void check_sequence(SequenceJob& job, const Settings& settings);
 
 }  // namespace vantage

@@ -23,11 +23,11 @@ void add_parameter_settings(Settings& settings, MatchOptions& options) {
 
 void add_method_settings(Settings& settings, MatchOptions& options) {
   settings.choice(
-      "method", options.method, method_names(),
+      "method", options.method, names_of(MatchMethod{}),
       "A method of Scharstein's book, for comparison; for photographs use --preset; auto: the "
       "preset's, without a preset ssd");
   settings.choice(
-      "preset", options.preset, preset_names(),
+      "preset", options.preset, names_of(MatchPreset{}),
       "Parameters for photographs, shown by --print-config:\nrealtime  0.35 times the time of "
       "balanced, 8.2 % bad pixels\nfast      0.7 times the time of balanced, 8.3 % bad "
       "pixels\nbalanced  the default, 7.5 % bad pixels (mean of 18 "
@@ -130,13 +130,7 @@ void add_baselines_setting(Settings& settings, std::vector<double>& baselines, s
   setting.get = [&baselines] { return baselines; };
 }
 
-void check_baselines(const Settings& settings, const std::vector<double>& baselines,
-                     std::size_t others) {
-  settings.refuse_idle({"cross-check-level"},
-                       "with several images: they are checked against whole maps");
-  settings.refuse_idle({"search-size", "window-levels"},
-                       "with several images: all candidates are searched at full size");
-  settings.refuse_idle({"tuning"}, "with several images: tuning is for pairs");
+void check_baselines(const std::vector<double>& baselines, std::size_t others) {
   if (baselines.size() != others) {
     throw UsageError(
         fmt::format("--baselines has {} number{}, expected {}: one for each image but the first",

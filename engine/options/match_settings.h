@@ -19,9 +19,8 @@ MatchOptions options_with_found_range();
 void add_match_settings(Settings& settings, MatchOptions& options);
 /// Positions of the cameras of all images but the first.
 void add_baselines_setting(Settings& settings, std::vector<double>& baselines, std::string help);
-/// Throws UsageError unless there is one number for each of `others` images; idle options too.
-void check_baselines(const Settings& settings, const std::vector<double>& baselines,
-                     std::size_t others);
+/// Throws UsageError unless there is one number for each of `others` images.
+void check_baselines(const std::vector<double>& baselines, std::size_t others);
 void add_reference_setting(Settings& settings, Side& reference);
 
 /// Settings for the report: the values of `settings` and, under `resolved`, those of

@@ -37,53 +37,6 @@ consteval bool has_all_texts() {
 static_assert(has_all_texts<MethodParameters>() && has_all_texts<RefinementOptions>(),
               "an option lacks its text");
 
-EnumNames<MatchCost> names_of(MatchCost /*type*/) { return cost_names(); }
-EnumNames<Aggregation> names_of(Aggregation /*type*/) { return aggregation_names(); }
-EnumNames<ColourUse> names_of(ColourUse /*type*/) {
-  return {{"luma", ColourUse::kLuma}, {"channels", ColourUse::kChannels}};
-}
-EnumNames<GradientNorm> names_of(GradientNorm /*type*/) {
-  return {{"l2", GradientNorm::kL2},
-          {"octagon", GradientNorm::kOctagon},
-          {"l1", GradientNorm::kL1},
-          {"max", GradientNorm::kMax}};
-}
-EnumNames<GradientComponents> names_of(GradientComponents /*type*/) {
-  return {{"xy", GradientComponents::kXy}, {"x", GradientComponents::kX}};
-}
-EnumNames<GradientFilter> names_of(GradientFilter /*type*/) {
-  return {{"central", GradientFilter::kCentral},
-          {"sobel", GradientFilter::kSobel},
-          {"simoncelli3", GradientFilter::kSimoncelli3},
-          {"simoncelli5", GradientFilter::kSimoncelli5},
-          {"forward", GradientFilter::kForward}};
-}
-EnumNames<Border> names_of(Border /*type*/) {
-  return {{"clip", Border::kClip}, {"valid", Border::kValid}};
-}
-EnumNames<Certainty> names_of(Certainty /*type*/) {
-  return {{"margin", Certainty::kMargin}, {"entropy", Certainty::kEntropy}};
-}
-EnumNames<Prior> names_of(Prior /*type*/) { return prior_names(); }
-EnumNames<PriorSmoothing> names_of(PriorSmoothing /*type*/) {
-  return {{"sum", PriorSmoothing::kSum}, {"maximum", PriorSmoothing::kMaximum}};
-}
-EnumNames<SearchSize> names_of(SearchSize /*type*/) {
-  return {{"full", SearchSize::kFull},
-          {"half", SearchSize::kHalf},
-          {"quarter", SearchSize::kQuarter},
-          {"auto", SearchSize::kAuto}};
-}
-EnumNames<Selection> names_of(Selection /*type*/) { return selection_names(); }
-EnumNames<Subpixel> names_of(Subpixel /*type*/) {
-  return {{"parabola", Subpixel::kParabola}, {"none", Subpixel::kNone}};
-}
-EnumNames<Fill> names_of(Fill /*type*/) {
-  return {{"constant", Fill::kConstant},    {"linear", Fill::kLinear},
-          {"median", Fill::kMedian},        {"canonical", Fill::kCanonical},
-          {"thin-plate", Fill::kThinPlate}, {"none", Fill::kNone}};
-}
-
 constexpr MatchPreset kDefaultPreset = MatchPreset::kBalanced;
 
 /// A line for each value of an enumeration that has a table, with its name and what it is.
@@ -217,7 +170,7 @@ Defaults method_defaults() {
   Defaults texts = struct_defaults<MethodParameters>();
   std::map<std::string_view, const char*> separators;
   const MethodParameters defaults;
-  for (const auto& method : method_names()) {
+  for (const auto& method : names_of(MatchMethod{})) {
     const MethodParameters book = book_parameters(method.second);
     visit_fields(
         [&](const MethodField& field, const auto& value, const auto& default_value) {

@@ -129,6 +129,24 @@ void Settings::set_short_help(std::vector<std::string_view> names,
   examples_ = std::move(examples);
 }
 
+OptionValues Settings::option_values() const {
+  OptionValues values;
+  for (const Setting& setting : settings_) {
+    const SettingValue value = setting.get();
+    const bool is_absent = setting.is_empty() || value == false || is_word(value, "auto") ||
+                           is_word(value, "none") || is_word(value, "all");
+    if (is_absent) {
+      values.set_absent(setting.name, is_set(setting.name));
+    } else if (value.is_number()) {
+      values.set(setting.name, value.get<double>(), is_set(setting.name));
+    } else {
+      values.set(setting.name, value.is_string() ? value.get_ref<const std::string&>() : "given",
+                 is_set(setting.name));
+    }
+  }
+  return values;
+}
+
 void Settings::refuse_idle(std::initializer_list<const char*> names, std::string_view why) const {
   for (const char* const name : names) {
     if (is_set(name)) {

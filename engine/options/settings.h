@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/combinations/option_values.h"
 #include "engine/options/setting_value.h"
 
 namespace vantage {
@@ -111,6 +112,9 @@ class Settings {
   /// the default (a file from --print-config holds all settings).
   [[nodiscard]] bool is_set(const std::string& name) const { return set_.contains(name); }
   void mark_set(const std::string& name) { set_.insert(name); }
+  /// The values by option, for rules that concern several; flags that are off, and what is empty,
+  /// `auto`, `none` or `all`, are not given.
+  [[nodiscard]] OptionValues option_values() const;
   /// Throws UsageError "--NAME has no effect …" for the first of `names` that is set; `why` such as
   /// "without --video".
   void refuse_idle(std::initializer_list<const char*> names, std::string_view why) const;

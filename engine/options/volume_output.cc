@@ -52,10 +52,8 @@ void add_volume_settings(Settings& settings, VolumeOutput& output) {
   rows.get = [&output]() -> SettingValue { return output.rows ? text_of(*output.rows) : kAllRows; };
 }
 
-void check_volume(const VolumeOutput& output, const MatchOptions& options,
-                  const Settings& settings) {
+void check_volume(const VolumeOutput& output, const MatchOptions& options) {
   if (output.file.empty()) {
-    settings.refuse_idle({"volume-kind", "volume-level", "volume-rows"}, "without --volume");
     return;
   }
   const int levels = options.resolved().levels;

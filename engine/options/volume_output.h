@@ -21,9 +21,8 @@ struct VolumeOutput {
 
 void add_volume_settings(Settings& settings, VolumeOutput& output);
 
-/// Throws UsageError where options do not go together or have no effect.
-void check_volume(const VolumeOutput& output, const MatchOptions& options,
-                  const Settings& settings);
+/// Throws UsageError where there is no such level, or no such rows.
+void check_volume(const VolumeOutput& output, const MatchOptions& options);
 
 /// Throws UsageError unless the level of an image with so many rows has the wanted ones. Call it
 /// before the search; the file knows exactly.

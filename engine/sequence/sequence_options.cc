@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 #include <string_view>
 #include <variant>
 
+#include "engine/combinations/combinations.h"
 #include "engine/error.h"
 #include "engine/io/maps/map_formats.h"
 #include "engine/io/maps/map_io.h"
-#include "engine/matching/aggregation/aggregation_table.h"
+#include "engine/matching/options/match_values.h"
 #include "engine/matching/search/match_inputs.h"
-#include "engine/matching/search/previous_maps.h"
 #include "engine/quoted_text.h"
+#include "engine/sequence/sequence_values.h"
 
 namespace vantage {
 namespace {
@@ -29,6 +32,18 @@ std::string_view name_of(SequenceOutput output) {
   return std::ranges::find(sequence_output_names(), output,
                            &std::pair<std::string_view, SequenceOutput>::second)
       ->first;
+}
+
+/// "save views" of each output.
+const std::map<SequenceOutput, std::string>& save_names() {
+  static const std::map<SequenceOutput, std::string> names = [] {
+    std::map<SequenceOutput, std::string> of_outputs;
+    for (const auto& [name, output] : sequence_output_names()) {
+      of_outputs[output] = fmt::format("save {}", name);
+    }
+    return of_outputs;
+  }();
+  return names;
 }
 
 /// For a fixed view, the frame of its only key does not matter.
@@ -57,26 +72,6 @@ void require_near(const ViewPose& pose) {
   }
 }
 
-void check_temporal(const SequenceOptions& options) {
-  const bool is_reduced =
-      options.match.resolved().search_size != SearchSize::kFull && options.baselines.empty();
-  if (options.temporal.weight > 0 && is_reduced) {
-    throw UsageError(
-        fmt::format("temporal-prior is {}, expected 0 with a reduced search-size (preset realtime)",
-                    options.temporal.weight));
-  }
-  if (options.temporal.reuse == Reuse::kNone) {
-    return;
-  }
-  const std::string_view obstacle = !options.baselines.empty() ? "baselines"
-                                    : options.saves_posterior()
-                                        ? "moments of p(d)"
-                                        : reuse_obstacle(options.match.in_force());
-  if (!obstacle.empty()) {
-    throw UsageError(fmt::format("reuse is frame, expected none with {}", obstacle));
-  }
-}
-
 void check_baselines(const SequenceOptions& options) {
   if (options.baselines.empty()) {
     return;
@@ -90,66 +85,6 @@ void check_baselines(const SequenceOptions& options) {
     throw UsageError(
         fmt::format("the baseline of the right camera is {}, expected a positive number",
                     options.baselines.front()));
-  }
-  if (options.match.resolved().selection == Selection::kSymmetric) {
-    throw UsageError(
-        "selection is symmetric, expected winner or scanline with baselines: a symmetric solution "
-        "is of two images");
-  }
-}
-
-void check_method_of_outputs(const SequenceOptions& options) {
-  const MethodParameters parameters = options.match.resolved();
-  if (options.saves_posterior()) {
-    const std::string_view name =
-        name_of(options.saves(SequenceOutput::kPosteriorMean) ? SequenceOutput::kPosteriorMean
-                                                              : SequenceOutput::kPosteriorVariance);
-    if (!has_likelihoods(parameters)) {
-      throw UsageError(
-          fmt::format("save has {} with {}, expected the aggregation bayes, which "
-                      "alone has p(d)",
-                      name, options.match.chosen()));
-    }
-    if (parameters.search_size != SearchSize::kFull && options.baselines.empty()) {
-      throw UsageError(
-          fmt::format("save has {} with a reduced search-size (preset realtime), "
-                      "expected search-size full",
-                      name));
-    }
-  }
-  if (options.saves_cyclopean() && parameters.selection != Selection::kSymmetric) {
-    throw UsageError(
-        "save has cyclopean or cyclopean-occlusion, expected them with selection symmetric only");
-  }
-}
-
-void check_unrectified(const SequenceOptions& options) {
-  if (options.unrectified == UnrectifiedSearch::kNone) {
-    return;
-  }
-  const auto refuse = [](bool is_used, std::string_view what, std::string_view why) {
-    if (is_used) {
-      throw UsageError(fmt::format("{} cannot be used with unrectified: {}", what, why));
-    }
-  };
-  constexpr std::string_view kFractions = "candidates differ by fractions from pixel to pixel";
-  refuse(!options.baselines.empty(), "baselines", "a calibration is of two cameras");
-  refuse(options.match.resolved().selection == Selection::kSymmetric, "selection symmetric",
-         "pixels of both photographs lie on different epipolar lines");
-  refuse(options.saves_posterior(), "save posterior-mean and posterior-variance", kFractions);
-  refuse(options.temporal.weight > 0, "temporal-prior", kFractions);
-  refuse(options.temporal.reuse != Reuse::kNone, "reuse", "tiles of rows are kept");
-  if (options.unrectified == UnrectifiedSearch::kOnRectified) {
-    return;
-  }
-  for (const SequenceOutput output : options.save) {
-    if (is_per_view(output) || is_metric(output) || output == SequenceOutput::kStereo ||
-        output == SequenceOutput::kComfort) {
-      throw UsageError(
-          fmt::format("save has {} with unrectified, which belongs to rectified pixels, expected "
-                      "rectified-pixels too",
-                      name_of(output)));
-    }
   }
 }
 
@@ -238,11 +173,6 @@ void check_formats(const SequenceOptions& options) {
 }
 
 void check_films(const SequenceOptions& options) {
-  if (options.search_range_per_shot && options.temporal.uses_past()) {
-    throw UsageError(
-        "search-range is shot, expected film with temporal-prior or reuse, which pass disparities "
-        "on");
-  }
   if (!is_grey(options.depth_coding)) {
     throw UsageError("depth-codec is h264, expected ffv1-16, ffv1-10, hevc-10 or prores-10");
   }
@@ -307,29 +237,44 @@ void SequenceOptions::validate() const {
   match.validate();
   synthesis.validate();
   temporal.validate();
-  check_temporal(*this);
   check_baselines(*this);
-  check_method_of_outputs(*this);
-  check_unrectified(*this);
+  refuse_combinations(CombinationScope::kSequence, values_of(*this));
   if (match.disparities_y) {
     throw UsageError("disparities-y is set, expected none: sequences consist of rectified pairs");
   }
   if (save.empty()) {
     throw UsageError("save is empty, expected at least one output");
   }
-  if (match.reference == Side::kRight) {
-    for (const SequenceOutput output :
-         {SequenceOutput::kRightDisparity, SequenceOutput::kRightUnmatched}) {
-      if (saves(output)) {
-        throw UsageError(fmt::format(
-            "save has {} with reference right, expected disparity, which is the right map then",
-            name_of(output)));
-      }
-    }
-  }
   check_films(*this);
   check_views(*this);
   check_formats(*this);
+}
+
+OptionValues values_of(const SequenceOptions& options) {
+  OptionValues values = values_of(options.match);
+  if (!options.baselines.empty()) {
+    values.set("baselines", "given");
+    values.set("search-size", "full", false);  // several images have no other
+  }
+  if (options.unrectified != UnrectifiedSearch::kNone) {
+    values.set("unrectified", options.unrectified == UnrectifiedSearch::kOnPhotographs
+                                  ? "photographs"
+                                  : "rectified images");
+  }
+  values.set("temporal-prior", options.temporal.weight);
+  values.set("reuse", options.temporal.reuse == Reuse::kNone ? "none" : "frame");
+  values.set("search-range", options.search_range_per_shot ? "shot" : "film");
+  if (!options.views.empty()) {
+    values.set("view", "given");
+  }
+  for (const SequenceOutput output : options.save) {
+    values.set(save_names().at(output), "given");
+  }
+  if (options.saves(SequenceOutput::kDepthVideo) &&
+      options.depth_scale.scope != DepthVideoScale::Scope::kGiven) {
+    values.set("save depth-video", "of the search");
+  }
+  return values;
 }
 
 }  // namespace vantage

@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
+#include "engine/combinations/combinations.h"
 #include "engine/error.h"
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/options/match_presets.h"
+#include "engine/matching/options/match_values.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/refinement/refinement_options.h"
@@ -52,12 +54,6 @@ void validate_candidates(DisparityRange x, const std::optional<DisparityRange>& 
   if (!y) {
     return;
   }
-  if (steps_per_px(parameters) > 1) {
-    throw UsageError(
-        fmt::format("candidate-step is {}, expected 1 with disparities-y: displacements are of "
-                    "whole pixels",
-                    parameters.candidate_step_px));
-  }
   validate_range("disparities-y", *y);
   const long long pairs = static_cast<long long>(x.count()) * y->count();
   if (pairs > kMaxCandidates) {
@@ -67,62 +63,61 @@ void validate_candidates(DisparityRange x, const std::optional<DisparityRange>& 
   }
 }
 
-void validate_refinement(const RefinementOptions& refinement, bool is_two_dimensional) {
-  require_within_limits(refinement);
-  if (refinement.edge_snapping_px > 0 && is_two_dimensional) {
-    throw UsageError(fmt::format(
-        "edge-snapping is {}, expected 0 with disparities-y: it moves discontinuities of "
-        "horizontal disparities only",
-        refinement.edge_snapping_px));
-  }
-}
-
-/// With a search in reduced images.
-void validate_reduced_search(const MethodParameters& parameters,
-                             const RefinementOptions& refinement, bool is_two_dimensional) {
-  const auto refuse = [](std::string_view field, int value, std::string_view why) {
-    throw UsageError(
-        fmt::format("{} is {}, expected 0 with a reduced search-size: {}", field, value, why));
-  };
-  if (is_two_dimensional || !can_reduce_search(parameters)) {
-    throw UsageError(
-        "search-size is not full, expected full: a reduced search-size needs a search along rows, "
-        "aggregation bayes, levels above 1, prior-smoothing maximum, a prior other than quadratic, "
-        "selection winner, candidate-step 1, and cost census-rays with one threshold and colour "
-        "luma");
-  }
-  if (refinement.edge_snapping_px > 0) {
-    refuse("edge-snapping", refinement.edge_snapping_px,
-           "maps are enlarged along the image's edges instead");
-  }
-  if (refinement.cross_check_level > 0) {
-    refuse("cross-check-level", refinement.cross_check_level, "both maps have half the size");
-  }
-}
-
-/// Throws UsageError for the first field that is set but not read by refinement.
-void require_read(const RefinementOverrides& set, const RefinementOptions& in_force, bool raw) {
-  const auto refuse_if = [](bool is_unread, std::string_view field, std::string_view why) {
-    if (is_unread) {
-      throw UsageError(fmt::format("{} is set but has no effect with {}", field, why));
-    }
-  };
+/// The values in force by option.
+OptionValues values_of(const MatchOptions& options, const MethodParameters& in_force,
+                       const RefinementOptions& of_maps) {
+  OptionValues values = values_of(in_force, options.parameters);
+  const RefinementOverrides& set = options.refinement;
   visit_fields(
-      [&](const RefinementField& field, const auto& value) {
-        refuse_if(raw && value, field.option, "raw, which leaves all refinement out");
+      [&](const RefinementField& field, const auto& value, const auto& chosen) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_same_v<Value, bool>) {
+          values.set(field.option, value ? "on" : "none", chosen.has_value());
+        } else if constexpr (std::is_enum_v<Value>) {
+          values.set(field.option, name_of(value), chosen.has_value());
+        } else {
+          values.set(field.option, value, chosen.has_value());
+        }
       },
-      set);
-  constexpr std::string_view kUnchecked = "cross-check none";
-  refuse_if(!in_force.cross_check && set.cross_check_px, "a number of pixels for cross-check",
-            kUnchecked);
-  refuse_if(!in_force.cross_check && set.cross_check_level.value_or(0) > 0, "cross-check-level",
-            kUnchecked);
-  const double contrast = RefinementOptions{}.uniform_contrast;
-  refuse_if(
-      !fills_uniform_regions(in_force.fill) && set.uniform_contrast.value_or(contrast) != contrast,
-      "uniform-contrast", "a fill other than canonical and thin-plate");
-  refuse_if(in_force.surface_fit_px == 0 && set.surface_fit_step_px.value_or(1) > 1,
-            "surface-fit-step", "surface-fit 0");
+      of_maps, set);
+  if (set.cross_check_px) {
+    values.set("cross-check PX", *set.cross_check_px, true);
+    values.set("cross-check", of_maps.cross_check ? "on" : "none", true);
+  }
+  if (options.method) {
+    values.set("method", name_of(*options.method));
+  }
+  if (options.preset) {
+    values.set("preset", name_of(*options.preset));
+  }
+  if (options.disparities_y) {
+    values.set("disparities-y", "given");
+  }
+  if (options.raw) {
+    values.set("raw", 1);
+  }
+  return values;
+}
+
+/// What the user did not set gives way to what it does not go with.
+template <typename Options>
+void give_way(const OptionValues& values, Options& options) {
+  for (const Combination& row : combinations()) {
+    const OptionValues::Value* const value = values.find(row.option.option);
+    if (!row.gives_way_to || value == nullptr || value->is_set || row.case_of(values) == nullptr) {
+      continue;
+    }
+    visit_fields(
+        [&](const auto& field, auto& in_force) {
+          using Value = std::remove_cvref_t<decltype(in_force)>;
+          // Of an option with two fields, the truth.
+          const bool is_meant = field.option != "cross-check" || std::is_same_v<Value, bool>;
+          if (field.option == row.option.option && is_meant) {
+            in_force = static_cast<Value>(*row.gives_way_to);
+          }
+        },
+        options);
+  }
 }
 
 }  // namespace
@@ -132,69 +127,19 @@ int candidate_count(DisparityRange disparities, const MethodParameters& paramete
 }
 
 bool can_check_levels(const MethodParameters& parameters) {
-  return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
-         parameters.aggregation == Aggregation::kBayes;
+  static const std::vector<Condition> obstacles = obstacles_of_checked_levels();
+  return none_holds(obstacles, values_of(parameters, {}));
 }
 
 void MatchOptions::validate() const {
-  if (method && preset) {
-    throw UsageError("method and preset are both set, expected one of them: a preset has a method");
-  }
   const MethodParameters in_force = resolved();
+  const RefinementOptions of_maps = resolved_refinement();
   vantage::validate(in_force);
   validate_candidates(disparities_auto ? DisparityRange{0, 0} : disparities, disparities_y,
                       in_force);
-  if (in_force.candidate_blocks > 0 && disparities_y) {
-    throw UsageError(fmt::format(
-        "candidate-blocks is {}, expected 0 with disparities-y: blocks are of candidates along "
-        "rows",
-        in_force.candidate_blocks));
-  }
-  if (in_force.selection != Selection::kWinner && disparities_y) {
-    throw UsageError(
-        fmt::format("selection is {}, expected winner with disparities-y: paths are along rows",
-                    name_of(in_force.selection)));
-  }
-  if (in_force.window_levels > 0 && disparities_y) {
-    throw UsageError(
-        fmt::format("window-levels is {}, expected 0 with disparities-y: windows are of candidates "
-                    "along rows",
-                    in_force.window_levels));
-  }
-  if (std::isfinite(in_force.slant_penalty) && disparities_y) {
-    throw UsageError(
-        fmt::format("slant-penalty is {}, expected none with disparities-y: surfaces slant along "
-                    "one range only",
-                    in_force.slant_penalty));
-  }
-  const RefinementOptions of_maps = resolved_refinement();
-  if (in_force.selection == Selection::kSymmetric && refinement.cross_check.value_or(false)) {
-    throw UsageError(
-        "cross-check is on, expected none with selection symmetric: both maps are of one solution");
-  }
-  if (in_force.selection == Selection::kSymmetric && in_force.candidate_step_px < 1) {
-    throw UsageError(fmt::format(
-        "candidate-step is {}, expected 1 with selection symmetric: it matches whole pixels",
-        in_force.candidate_step_px));
-  }
-  validate_refinement(of_maps, disparities_y.has_value());
-  if (of_maps.cross_check_level > 0 && disparities_y) {
-    throw UsageError(fmt::format(
-        "cross-check-level is {}, expected 0 with disparities-y: winners of coarse levels are kept "
-        "of searches along rows only",
-        of_maps.cross_check_level));
-  }
-  if (in_force.search_size != SearchSize::kFull) {
-    validate_reduced_search(in_force, of_maps, disparities_y.has_value());
-  }
-  if (of_maps.cross_check_level > 0 && !can_check_levels(in_force)) {
-    throw UsageError(fmt::format(
-        "cross-check-level is {}, expected 0: only aggregation bayes with levels above 1 and "
-        "selection winner has maps of coarse levels",
-        of_maps.cross_check_level));
-  }
+  require_within_limits(of_maps);
+  refuse_combinations(CombinationScope::kMatch, values_of(*this, in_force, of_maps));
   require_read(parameters, in_force, chosen());
-  require_read(refinement, of_maps, raw);
 }
 
 std::optional<MatchPreset> MatchOptions::preset_in_force() const {
@@ -227,26 +172,11 @@ MethodParameters MatchOptions::resolved() const {
   }
   MethodParameters result =
       resolve(method.value_or(settings.method), merge(settings.parameters, parameters));
-  // A preset's search size, windows and pruning apply only where they are possible: the user's
-  // choices take precedence.
-  if (!parameters.search_size && (disparities_y || !can_reduce_search(result))) {
-    result.search_size = SearchSize::kFull;
-  }
-  const bool chooses_blocks = parameters.candidate_blocks || parameters.pruned_levels;
-  if (!parameters.window_levels && (disparities_y || chooses_blocks ||
-                                    result.final_iterations == 0 || !can_search_windows(result))) {
-    result.window_levels = 0;
-  }
-  if (!parameters.candidate_blocks && (disparities_y || !can_prune(result))) {
-    result.candidate_blocks = 0;
-  }
+  give_way(values_of(*this, result, {}), result);
   if (!parameters.candidate_blocks) {
     // A block is a number of candidates: the same disparities in pixels need more blocks.
     result.candidate_blocks =
         std::min(kMaxCandidateBlocks, result.candidate_blocks * steps_per_px(result));
-  }
-  if (!parameters.slant_penalty && disparities_y) {
-    result.slant_penalty = std::numeric_limits<double>::infinity();
   }
   return result;
 }
@@ -259,13 +189,7 @@ RefinementOptions MatchOptions::resolved_refinement() const {
   }
   take_over(settings_of(preset_in_force()).refinement, result);
   take_over(refinement, result);
-  if (!refinement.cross_check && resolved().selection == Selection::kSymmetric) {
-    result.cross_check = false;
-  }
-  // As with pruning: a preset's cross-check level applies only where it is possible.
-  if (!refinement.cross_check_level && (disparities_y || !can_check_levels(resolved()))) {
-    result.cross_check_level = 0;
-  }
+  give_way(values_of(*this, resolved(), result), result);
   return result;
 }
 
@@ -283,6 +207,13 @@ MatchOptions MatchOptions::fully_resolved() const {
   result.parameters = as_overrides(resolved());
   result.refinement = all_set<RefinementOverrides>(resolved_refinement());
   return result;
+}
+
+OptionValues values_of(const MatchOptions& options) {
+  OptionValues values = values_of(options, options.resolved(), options.resolved_refinement());
+  values.chosen = options.chosen();
+  values.set("reference", options.reference == Side::kLeft ? "left" : "right");
+  return values;
 }
 
 }  // namespace vantage

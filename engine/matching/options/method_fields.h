@@ -5,6 +5,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "engine/combinations/option_values.h"
 #include "engine/matching/options/method_rules.h"
 #include "engine/matching/options/parameter_readers.h"
 #include "engine/option_field.h"
@@ -128,6 +129,10 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
         options.occlusion_penalty...);
   visit(Field{"subpixel", readers::kAll}, options.subpixel...);
 }
+
+/// The values in force by option; those that the cost and the aggregation do not read are not
+/// given.
+OptionValues values_of(const MethodParameters& in_force, const MethodOverrides& set);
 
 /// Throws UsageError for the first parameter that `overrides` sets but nothing reads under
 /// `in_force`. `chosen`: describes `in_force` in words.

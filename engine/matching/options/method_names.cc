@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <span>
 
 #include "engine/matching/aggregation/aggregation_table.h"
@@ -10,11 +9,6 @@
 
 namespace vantage {
 namespace {
-
-template <typename Enum>
-std::string_view name_among(const EnumNames<Enum>& names, Enum value) {
-  return std::ranges::find(names, value, &std::pair<std::string_view, Enum>::second)->first;
-}
 
 template <typename Enum, typename Entry>
 EnumNames<Enum> names_in_table(std::span<const Entry> table) {
@@ -27,7 +21,7 @@ EnumNames<Enum> names_in_table(std::span<const Entry> table) {
 
 }  // namespace
 
-const EnumNames<MatchMethod>& method_names() {
+const EnumNames<MatchMethod>& names_of(MatchMethod /*type*/) {
   static const EnumNames<MatchMethod> names = {{"ssd", MatchMethod::kSsd},
                                                {"gradient", MatchMethod::kGradient},
                                                {"diffusion", MatchMethod::kDiffusion},
@@ -37,7 +31,7 @@ const EnumNames<MatchMethod>& method_names() {
   return names;
 }
 
-const EnumNames<MatchPreset>& preset_names() {
+const EnumNames<MatchPreset>& names_of(MatchPreset /*type*/) {
   static const EnumNames<MatchPreset> names = {{"realtime", MatchPreset::kRealtime},
                                                {"fast", MatchPreset::kFast},
                                                {"balanced", MatchPreset::kBalanced},
@@ -45,36 +39,96 @@ const EnumNames<MatchPreset>& preset_names() {
   return names;
 }
 
-const EnumNames<Selection>& selection_names() {
-  static const EnumNames<Selection> names = {{"winner", Selection::kWinner},
-                                             {"scanline", Selection::kScanline},
-                                             {"symmetric", Selection::kSymmetric}};
+const EnumNames<ColourUse>& names_of(ColourUse /*type*/) {
+  static const EnumNames<ColourUse> names = {{"luma", ColourUse::kLuma},
+                                             {"channels", ColourUse::kChannels}};
   return names;
 }
 
-const EnumNames<Prior>& prior_names() {
+const EnumNames<GradientNorm>& names_of(GradientNorm /*type*/) {
+  static const EnumNames<GradientNorm> names = {{"l2", GradientNorm::kL2},
+                                                {"octagon", GradientNorm::kOctagon},
+                                                {"l1", GradientNorm::kL1},
+                                                {"max", GradientNorm::kMax}};
+  return names;
+}
+
+const EnumNames<GradientComponents>& names_of(GradientComponents /*type*/) {
+  static const EnumNames<GradientComponents> names = {{"xy", GradientComponents::kXy},
+                                                      {"x", GradientComponents::kX}};
+  return names;
+}
+
+const EnumNames<GradientFilter>& names_of(GradientFilter /*type*/) {
+  static const EnumNames<GradientFilter> names = {{"central", GradientFilter::kCentral},
+                                                  {"sobel", GradientFilter::kSobel},
+                                                  {"simoncelli3", GradientFilter::kSimoncelli3},
+                                                  {"simoncelli5", GradientFilter::kSimoncelli5},
+                                                  {"forward", GradientFilter::kForward}};
+  return names;
+}
+
+const EnumNames<Border>& names_of(Border /*type*/) {
+  static const EnumNames<Border> names = {{"clip", Border::kClip}, {"valid", Border::kValid}};
+  return names;
+}
+
+const EnumNames<Certainty>& names_of(Certainty /*type*/) {
+  static const EnumNames<Certainty> names = {{"margin", Certainty::kMargin},
+                                             {"entropy", Certainty::kEntropy}};
+  return names;
+}
+
+const EnumNames<Prior>& names_of(Prior /*type*/) {
   static const EnumNames<Prior> names = {{"contaminated-gaussian", Prior::kContaminatedGaussian},
                                          {"impulse", Prior::kImpulse},
                                          {"quadratic", Prior::kQuadratic}};
   return names;
 }
 
-const EnumNames<MatchCost>& cost_names() {
+const EnumNames<PriorSmoothing>& names_of(PriorSmoothing /*type*/) {
+  static const EnumNames<PriorSmoothing> names = {{"sum", PriorSmoothing::kSum},
+                                                  {"maximum", PriorSmoothing::kMaximum}};
+  return names;
+}
+
+const EnumNames<SearchSize>& names_of(SearchSize /*type*/) {
+  static const EnumNames<SearchSize> names = {{"full", SearchSize::kFull},
+                                              {"half", SearchSize::kHalf},
+                                              {"quarter", SearchSize::kQuarter},
+                                              {"auto", SearchSize::kAuto}};
+  return names;
+}
+
+const EnumNames<Selection>& names_of(Selection /*type*/) {
+  static const EnumNames<Selection> names = {{"winner", Selection::kWinner},
+                                             {"scanline", Selection::kScanline},
+                                             {"symmetric", Selection::kSymmetric}};
+  return names;
+}
+
+const EnumNames<Subpixel>& names_of(Subpixel /*type*/) {
+  static const EnumNames<Subpixel> names = {{"parabola", Subpixel::kParabola},
+                                            {"none", Subpixel::kNone}};
+  return names;
+}
+
+const EnumNames<Fill>& names_of(Fill /*type*/) {
+  static const EnumNames<Fill> names = {
+      {"constant", Fill::kConstant},   {"linear", Fill::kLinear},        {"median", Fill::kMedian},
+      {"canonical", Fill::kCanonical}, {"thin-plate", Fill::kThinPlate}, {"none", Fill::kNone}};
+  return names;
+}
+
+const EnumNames<MatchCost>& names_of(MatchCost /*type*/) {
   static const auto names = names_in_table<MatchCost>(cost_table());
   return names;
 }
 
-const EnumNames<Aggregation>& aggregation_names() {
+const EnumNames<Aggregation>& names_of(Aggregation /*type*/) {
   static const auto names = names_in_table<Aggregation>(aggregation_table());
   return names;
 }
-
-std::string_view name_of(MatchMethod method) { return name_among(method_names(), method); }
-std::string_view name_of(MatchPreset preset) { return name_among(preset_names(), preset); }
-std::string_view name_of(Selection selection) { return name_among(selection_names(), selection); }
-std::string_view name_of(Prior prior) { return name_among(prior_names(), prior); }
-std::string_view name_of(MatchCost cost) { return cost_of(cost).name; }
-std::string_view name_of(Aggregation aggregation) { return aggregation_of(aggregation).name; }
 
 std::string summary_of(const MethodParameters& parameters) {
   const bool has_other_prior = parameters.aggregation == Aggregation::kBayes &&

@@ -2,17 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <vector>
 
+#include "engine/combinations/combinations.h"
 #include "engine/error.h"
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/costs/cost_table.h"
-#include "engine/matching/levels/energy_format.h"
 #include "engine/matching/options/method_fields.h"
-#include "engine/matching/options/method_names.h"
-#include "engine/word_list.h"
 
 namespace vantage {
 namespace {
@@ -52,50 +51,6 @@ void require(bool holds, std::string_view field, double value, std::string_view 
   }
 }
 
-void validate_pruning(const MethodParameters& parameters) {
-  const int blocks = parameters.candidate_blocks;
-  if (blocks == 0) {
-    return;
-  }
-  require(parameters.levels > 1, "candidate-blocks", blocks,
-          "0 with a single level: candidates are chosen by the winners of a coarser level");
-  require(has_likelihoods(parameters), "candidate-blocks", blocks,
-          "0 unless aggregation is bayes: for energies, candidates that were not searched have no "
-          "value that is neutral to their neighbours");
-  require(
-      !is_evidence(parameters), "candidate-blocks", blocks,
-      fmt::format("0 with the cost {}: its likelihoods compare a candidate with the best of all",
-                  cost_of(parameters).name));
-  require(parameters.prior_smoothing == PriorSmoothing::kMaximum, "candidate-blocks", blocks,
-          "0 with prior-smoothing sum: pruning needs prior-smoothing maximum");
-  require(parameters.prior != Prior::kQuadratic, "candidate-blocks", blocks,
-          "0 with prior quadratic: it is unbounded, so unsearched candidates have no finite cost");
-  require(parameters.selection == Selection::kWinner, "candidate-blocks", blocks,
-          fmt::format("0 with selection {}: a path along a row needs the costs of all candidates",
-                      name_of(parameters.selection)));
-}
-
-void validate_search_size(const MethodParameters& parameters) {
-  if (parameters.search_size != SearchSize::kFull) {
-    require(parameters.final_iterations > 0, "final-iterations", parameters.final_iterations,
-            "at least 1 with a reduced search-size, whose full-size candidates need them");
-  }
-}
-
-void validate_windows(const MethodParameters& parameters) {
-  if (parameters.window_levels > 0) {
-    require(
-        can_search_windows(parameters), "window-levels", parameters.window_levels,
-        "0; a search in windows needs aggregation bayes, levels above 1, prior-smoothing maximum, "
-        "a prior other than quadratic, selection winner, candidate-step 1 and cost census-rays "
-        "of luma");
-    require(parameters.final_iterations > 0, "final-iterations", parameters.final_iterations,
-            "at least 1 with window-levels above 0");
-    require(parameters.window_levels < 2 || parameters.iterations > 0, "iterations",
-            parameters.iterations, "at least 1 with window-levels 2");
-  }
-}
-
 void validate_step(const MethodParameters& parameters) {
   if (parameters.aggregation == Aggregation::kMembrane) {
     const double max = 1 / (4 + parameters.beta);
@@ -106,29 +61,6 @@ void validate_step(const MethodParameters& parameters) {
   } else if (parameters.aggregation != Aggregation::kBayes) {
     require(parameters.lambda > 0 && parameters.lambda < 0.25, "lambda", parameters.lambda,
             "a number above 0 and below 0.25: larger steps of diffusion are unstable");
-  }
-}
-
-void validate_combination(const MethodParameters& parameters) {
-  if (parameters.aggregation == Aggregation::kLocalStopping &&
-      parameters.certainty == Certainty::kMargin && is_evidence(parameters)) {
-    throw UsageError(
-        fmt::format("certainty margin divides by the sum of a pixel's costs, which for the cost {} "
-                    "have both signs; expected certainty entropy",
-                    cost_of(parameters).name));
-  }
-  if (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters) &&
-      cost_of(parameters).unit != ResidualUnit::kGreyLevels) {
-    std::vector<std::string_view> others;
-    for (const MatchingCost& cost : cost_table()) {
-      if (cost.unit != ResidualUnit::kGreyLevels) {
-        others.push_back(cost.name);
-      }
-    }
-    throw UsageError(
-        fmt::format("sigma-measurement is estimated, which gives grey levels, but the costs {} are "
-                    "none; expected a number",
-                    word_list(others, "and")));
   }
 }
 
@@ -209,18 +141,21 @@ MethodParameters resolve(MatchMethod method, const MethodOverrides& overrides) {
 }
 
 bool can_prune(const MethodParameters& parameters) {
-  return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
-         has_likelihoods(parameters) && !is_evidence(parameters) && uses_fixed_energies(parameters);
+  const OptionValues values = values_of(parameters, {});
+  return std::ranges::none_of(combinations(), [&](const Combination& row) {
+    return row.scope == CombinationScope::kMethod && row.option.option == "candidate-blocks" &&
+           !none_holds(row.with, values);
+  });
 }
 
 bool can_search_windows(const MethodParameters& parameters) {
-  return parameters.selection == Selection::kWinner && parameters.levels > 1 &&
-         uses_fixed_energies(parameters) && parameters.cost == MatchCost::kRayCensus &&
-         parameters.colour == ColourUse::kLuma && steps_per_px(parameters) == 1;
+  static const std::vector<Condition> obstacles = obstacles_of_windows();
+  return none_holds(obstacles, values_of(parameters, {}));
 }
 
 bool can_reduce_search(const MethodParameters& parameters) {
-  return can_search_windows(parameters) && parameters.census_thresholds == 1;
+  static const std::vector<Condition> obstacles = obstacles_of_reduced_search();
+  return none_holds(obstacles, values_of(parameters, {}));
 }
 
 bool uses_sigma_measurement(const MethodParameters& parameters) {
@@ -238,11 +173,8 @@ bool uses_pair_exposure(const MethodParameters& parameters) {
 
 void validate(const MethodParameters& parameters) {
   require_within_limits(parameters);
-  validate_pruning(parameters);
-  validate_search_size(parameters);
-  validate_windows(parameters);
   validate_step(parameters);
-  validate_combination(parameters);
+  refuse_combinations(CombinationScope::kMethod, values_of(parameters, {}));
 }
 
 }  // namespace vantage

@@ -2,29 +2,26 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string_view>
 #include <variant>
+#include <vector>
 
+#include "engine/combinations/combinations.h"
 #include "engine/image/memory_use.h"
-#include "engine/matching/aggregation/aggregation_table.h"
-#include "engine/matching/options/method_rules.h"
+#include "engine/matching/options/method_fields.h"
 
 namespace vantage {
 
 std::string_view reuse_obstacle(const ResolvedMatchOptions& options) {
-  const MethodParameters& parameters = options.parameters;
-  if (parameters.levels == 1 || !has_likelihoods(parameters)) {
-    return "a method without coarse levels of Bayesian diffusion";
-  }
+  static const std::vector<Condition> obstacles = obstacles_of_reuse();
+  OptionValues values = values_of(options.parameters, {});
   if (options.disparities_y) {
-    return "disparities-y";
+    values.set("disparities-y", "given");
   }
-  if (parameters.selection != Selection::kWinner) {
-    return "a selection other than winner";
-  }
-  if (steps_per_px(parameters) > 1) {
-    return "candidates between pixels";
-  }
-  return uses_pair_exposure(parameters) ? "grey levels estimated from each pair" : "";
+  const auto found = std::ranges::find_if(
+      obstacles, [&](const Condition& obstacle) { return obstacle.holds(values); });
+  constexpr std::string_view kWith = "with ";
+  return found == obstacles.end() ? std::string_view() : found->phrase.substr(kWith.size());
 }
 
 void copy_winners(const MatchedMap& map, Execution& execution, MatchedMap& copy) {
