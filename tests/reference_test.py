@@ -53,6 +53,12 @@ class ReferenceTest(unittest.TestCase):
                                "vantage", *words], check=True, capture_output=True,
                               text=True).stdout.split()
 
+    def test_the_guide_lists_every_command(self):
+        guide = (SCRIPTS.parent.parent / "docs" / "GUIDE.md").read_text(encoding="utf-8")
+        table = guide.split("## All commands", 1)[1].split("\n## ", 1)[0]
+        for command in self.commands:
+            self.assertIn(f"`{command}`", table)
+
     def test_every_option_is_in_the_manual_the_pages_and_the_completion(self):
         self.assertGreater(len(self.commands), 15)
         for command in self.commands:
