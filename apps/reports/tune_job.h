@@ -12,6 +12,7 @@ namespace vantage::apps {
 
 enum class TunedCommands { kMatch, kRun, kBoth };
 
+/// What `tune` is asked for.
 struct TuneJob {
   MatchOptions match;
   CommonOptions common;

@@ -8,6 +8,7 @@ namespace vantage::apps {
 
 enum class BatchEngine { kSlurm };
 
+/// What `submit` is asked for.
 struct SubmitJob {
   RunJob run;
   SlurmOptions slurm;

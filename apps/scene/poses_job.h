@@ -16,6 +16,7 @@ struct KnownDistance {
   double metres = 1;
 };
 
+/// What `scene poses` is asked for.
 struct ScenePosesJob {
   std::string images;
   std::string intrinsics;
