@@ -145,34 +145,6 @@ TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
             seconds["compute"].get<double>() + seconds["stages"]["read"].get<double>());
 }
 
-TEST_F(MatchCommand, ResultsDoNotDependOnExecution) {
-  const auto map_of = [&](const std::string& method, const Words& way) {
-    Words options = {"--method", method};
-    if (method == "auto") {
-      options.push_back("--levels=3");  // of the preset that is the default
-    }
-    options.insert(options.end(), way.begin(), way.end());
-    return options;
-  };
-  for (const std::string method : {"auto", "ssd"}) {
-    succeeds(match(folder_ / "a.pfm", map_of(method, {"--executor", "serial"})));
-    const std::string expected = read_file(folder_ / "a.pfm");
-    const std::vector<Words> ways = {
-        {"--executor", "tbb", "--threads", "3", "--strip-width", "7", "--band-height", "5"},
-        {"--executor", "openmp", "--threads", "2"},
-        {"--isa", "SSE4"}};
-    for (const auto& way : ways) {
-      const ProcessResult result = match(folder_ / "b.pfm", map_of(method, way));
-      if (result.exit_code == 2 && way.front() == "--isa") {
-        continue;  // not an x86 machine: the message lists what there is
-      }
-      ASSERT_EQ(result.exit_code, 0) << result.err;
-      EXPECT_EQ(read_file(folder_ / "b.pfm"), expected)
-          << method << ' ' << way.front() << ' ' << way[1];
-    }
-  }
-}
-
 TEST_F(MatchCommand, IsaIsTheOneThatRan) {
   const auto info = nlohmann::json::parse(run_vantage({"info", "--json"}).out);
   for (const std::string name : info["isa_available"]) {

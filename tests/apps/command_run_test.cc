@@ -87,32 +87,6 @@ TEST_F(RunCommand, QuietIsQuietInTheSurveyToo) {
   EXPECT_EQ(result.err, "");
 }
 
-TEST_F(RunCommand, FilesDoNotDependOnExecutionNorFramesInFlight) {
-  const Words outputs = {
-      "--save", "disparity,preview,views", "--view", "0.25", "--view", "1.5", "--format", "png"};
-  const auto run_with = [&](const std::string& out, const Words& more) {
-    succeeds(run(out, joined(more, outputs)));
-    return made_in(out);
-  };
-  const std::string expected = folder_ / "expected";
-  const auto names = run_with(expected, {"--executor", "serial", "--in-flight", "1"});
-  ASSERT_EQ(names.size(), 4U * kFrames);
-  EXPECT_EQ(names.back(), "views/1.5/000005.png");
-  const std::vector<Words> ways = {
-      {"--executor", "tbb", "--threads", "1", "--in-flight", "2"},
-      {"--executor", "tbb", "--threads", "4", "--in-flight", "5", "--strip-width", "9"},
-      {"--executor", "tbb", "--threads", "3", "--in-flight", "1"},
-      {"--executor", "openmp", "--threads", "1", "--in-flight", "1"},
-      {"--executor", "openmp", "--threads", "4", "--in-flight", "3", "--band-height", "4"}};
-  for (std::size_t way = 0; way < ways.size(); ++way) {
-    const std::string out = folder_ / std::to_string(way);
-    ASSERT_EQ(run_with(out, ways[way]), names);
-    for (const std::string& file : names) {
-      EXPECT_EQ(read_file(out + "/" + file), read_file(expected + "/" + file)) << file << way;
-    }
-  }
-}
-
 TEST_F(RunCommand, TakesPatternsGlobsAndVideos) {
   succeeds(run(folder_ / "a"));
   succeeds(run_vantage({"run", "--left", left_ + "/frame%d.png", "--right", right_ + "/*.png", "-o",

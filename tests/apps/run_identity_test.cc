@@ -7,16 +7,17 @@
 
 namespace vantage::run_identity_test {
 
-/// Of threads, executor and frames in flight.
+/// Of threads, executor and frames in flight; with two threads images are cut into small parts.
 struct Way {
   std::string executor;
   int threads;
   int in_flight;
 
   [[nodiscard]] Words arguments() const {
-    return {"--executor",  executor,
-            "--threads",   std::to_string(threads),
-            "--in-flight", std::to_string(in_flight)};
+    const Words of_cuts = {"--strip-width", "9", "--band-height", "4"};
+    return joined({"--executor", executor, "--threads", std::to_string(threads), "--in-flight",
+                   std::to_string(in_flight)},
+                  threads == 2 ? of_cuts : Words{});
   }
 };
 
