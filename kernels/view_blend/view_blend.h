@@ -40,7 +40,7 @@ inline constexpr std::uint8_t kFromRight = 170;
 /// camera's own and only that camera counts. One defined: only that one counts. Its intensity
 /// transform always applies. Integer values are rounded half up and saturated; float values are
 /// clamped to 0..1, or to the range of the two source values where that is wider. Returns the
-/// number of holes. Identical on every instruction set and to the reference. T is uint8_t, uint16_t
+/// number of holes. Identical on every instruction set. T is uint8_t, uint16_t
 /// or float; channels 1, 3 or 4.
 int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
               const BlendedRow<std::uint8_t>& view);
@@ -48,12 +48,5 @@ int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channe
               const BlendedRow<std::uint16_t>& view);
 int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
               const BlendedRow<float>& view);
-
-int blend_row_ref(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
-                  const BlendedRow<std::uint8_t>& view);
-int blend_row_ref(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
-                  const BlendedRow<std::uint16_t>& view);
-int blend_row_ref(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
-                  const BlendedRow<float>& view);
 
 }  // namespace vantage::kernels

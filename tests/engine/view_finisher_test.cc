@@ -88,9 +88,9 @@ TEST(ViewFinisher, IsBlendThenFillThenMix) {
         kernels::BlendWeights weights;
         weights.alpha = static_cast<float>(warper.alpha());
         weights.trust_at_ends = 0.1F;
-        kernels::blend_row_ref(pair, weights, 1,
-                               kernels::BlendedRow<std::uint8_t>{pixels.data(), d.data(),
-                                                                 empty.data(), sources.data()});
+        kernels::blend_row(pair, weights, 1,
+                           kernels::BlendedRow<std::uint8_t>{pixels.data(), d.data(), empty.data(),
+                                                             sources.data()});
         kernels::fill_holes_row({.pixels = pixels.data(),
                                  .disparity_px = d.data(),
                                  .width = kWidth,
