@@ -33,7 +33,7 @@ MatchOptions UnrectifiedPairs::match(const MatchOptions& options, const Photogra
     rectifier.apply(right, Side::kRight, rows_right, execution_);
     used = with_found_ranges(used, rows_left, rows_right, execution_);
   }
-  UnrectifiedMatcher(used, rectifier, cameras->grids, execution_)
+  UnrectifiedMatcher(used, cameras->grids, execution_)
       .match(left, right,
              {.left = request.left, .right = request.right, .confidence = request.confidence},
              maps);

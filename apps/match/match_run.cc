@@ -249,25 +249,9 @@ DepthFiles write_outputs(const MatchJob& job, const MatchInputs& inputs, const M
   return depths;
 }
 
-/// Prints what was estimated.
-void print_exposure(const MatchReport& match) {
-  if (!match.exposure) {
-    return;
-  }
-  const PairExposure& exposure = *match.exposure;
-  std::string text = exposure.has_intensity_change
-                         ? fmt::format("right intensity x {:.4g} {:+.4g}",
-                                       exposure.of_right.luma.gain, exposure.of_right.luma.offset)
-                         : "intensities unchanged";
-  if (exposure.sigma_measurement) {
-    text += fmt::format(", noise {:.3g}", *exposure.sigma_measurement);
-  }
-  tell("match: from {} matches: {}\n", exposure.matches, text);
-}
-
 /// Prints what was matched and where it was written.
-void print_results(const MatchJob& job, scheduler::Extent size, const MatchReport& match,
-                   const DepthFiles& depths, const SpaceOutputs& space) {
+void print_results(const MatchJob& job, scheduler::Extent size, const DepthFiles& depths,
+                   const SpaceOutputs& space) {
   tell("match: {} ({}), {}x{} pixels, disparities {}:{}, {} -> {}\n", job.match.chosen(),
        summary_of(job.match.resolved()), size.columns, size.rows, job.match.disparities.min,
        job.match.disparities.max, job.left, fmt::join(job.written_maps(), ", "));
@@ -275,7 +259,6 @@ void print_results(const MatchJob& job, scheduler::Extent size, const MatchRepor
     tell("match: {}: blue is {} px (far), red {} px (near), black unknown\n", job.preview,
          job.match.disparities.min, job.match.disparities.max);
   }
-  print_exposure(match);
   for (const std::string& summary : depths.summaries) {
     tell("match: {}\n", summary);
   }
@@ -326,7 +309,7 @@ int run_match(MatchJob& job, const Settings& settings) {
   const DepthFiles depths = write_outputs(job, inputs, matched, space, execution, report);
   report.write(job.common.report);
   if (!job.common.quiet) {
-    print_results(job, inputs.size, matched.report, depths, space);
+    print_results(job, inputs.size, depths, space);
     report.print_summary();
   }
   return kExitDone;

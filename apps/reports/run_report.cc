@@ -38,28 +38,6 @@ std::string time_text(double seconds) {
   return seconds < 10 ? fmt::format("{:.1f} ms", seconds * 1e3) : fmt::format("{:.1f} s", seconds);
 }
 
-SettingValue values_of(const IntensityChange& change) {
-  return {{"gain", change.gain}, {"offset", change.offset}};
-}
-
-/// What a pair told about its grey levels; null: nothing, what the settings say is in force.
-SettingValue values_of(const PairExposure& levels) {
-  SettingValue result = {{"matches", levels.matches},
-                         {"luma", nullptr},
-                         {"channels", nullptr},
-                         {"sigma_measurement", nullptr}};
-  if (levels.has_intensity_change) {
-    result["luma"] = values_of(levels.of_right.luma);
-    for (const IntensityChange& channel : levels.of_right.channels) {
-      result["channels"].push_back(values_of(channel));
-    }
-  }
-  if (levels.sigma_measurement) {
-    result["sigma_measurement"] = *levels.sigma_measurement;
-  }
-  return result;
-}
-
 }  // namespace
 
 RunReport::RunReport(std::string command, SettingValue settings)
@@ -95,9 +73,6 @@ void RunReport::add_match(const MatchReport& match) {
   finest_cells_ += match.finest_cells;
   finest_pixels_ += match.finest_pixels;
   set_plan(match.plan);
-  if (match.exposure) {
-    add_result("grey_levels", values_of(*match.exposure));
-  }
 }
 
 void RunReport::set_plan(const scheduler::ChainPlan& plan) {

@@ -6,9 +6,7 @@
 #include <utility>
 
 #include "engine/combinations/combination_rows.h"
-#include "engine/matching/costs/cost_table.h"
 #include "engine/refinement/refinement_options.h"
-#include "engine/word_list.h"
 
 // What does not go together in a method, and in the options of a match.
 
@@ -21,25 +19,6 @@ constexpr double kNoPenalty = std::numeric_limits<double>::infinity();
 
 Condition reduced(std::string_view phrase = "with a reduced search-size") {
   return is_not("search-size", "full").said(phrase);
-}
-
-void add_estimated_sigma(std::vector<Combination>& rows) {
-  std::vector<std::string_view> others;
-  std::vector<Condition> with;
-  for (const MatchingCost& cost : cost_table()) {
-    if (cost.unit != ResidualUnit::kGreyLevels) {
-      others.push_back(cost.name);
-      with.push_back(is("cost", cost.name));
-    }
-  }
-  rows.push_back(
-      {.scope = kMethod,
-       .option = is("sigma-measurement", "estimated"),
-       .with = std::move(with),
-       .reason = "what is estimated are grey levels",
-       .message = fmt::format("sigma-measurement is estimated, which gives grey levels, but the "
-                              "costs {} are none; expected a number",
-                              word_list(others, "and"))});
 }
 
 /// Candidates of fine levels are pruned.
@@ -211,14 +190,11 @@ std::vector<Condition> obstacles_of_checked_levels() {
 
 std::vector<Condition> obstacles_of_reuse() {
   constexpr std::string_view kLevels = "with a method without coarse levels of Bayesian diffusion";
-  constexpr std::string_view kExposure = "with grey levels estimated from each pair";
   return {is("levels", 1).said(kLevels),
           is_not("aggregate", "bayes").said(kLevels),
           given("disparities-y").said("with disparities-y"),
           is_not("selection", "winner").said("with a selection other than winner"),
-          below("candidate-step", 1).said("with candidates between pixels"),
-          is("match-exposure", "estimated").said(kExposure),
-          is("sigma-measurement", "estimated").said(kExposure)};
+          below("candidate-step", 1).said("with candidates between pixels")};
 }
 
 std::vector<Combination> method_combinations() {
@@ -232,7 +208,6 @@ std::vector<Combination> method_combinations() {
                   .message =
                       "certainty margin divides by the sum of a pixel's costs, which for the cost "
                       "gradient have both signs; expected certainty entropy"});
-  add_estimated_sigma(rows);
   return rows;
 }
 

@@ -48,11 +48,7 @@ void set_needs(const SearchAbilities& abilities, SearchJob& job) {
 }  // namespace
 
 MatchRunner::MatchRunner(const ResolvedMatchOptions& options, Execution& execution)
-    : options_(options), execution_(execution) {
-  if (uses_pair_exposure(options.parameters)) {
-    exposure_ = std::make_unique<PairExposureEstimator>(options.disparities, execution);
-  }
-}
+    : options_(options), execution_(execution) {}
 
 /// keeps_costs: for the pair after it.
 MatchSize MatchRunner::size_of(const MatchCall& call, bool keeps_costs) const {
@@ -76,7 +72,6 @@ SearchJob MatchRunner::job_of(const MatchCall& call, const MatchRequest& request
           .clock = clock,
           .images = call.images,
           .reference_side = call.reference_side,
-          .rectifier = call.rectifier,
           .grids = call.grids,
           .parameters = options_.parameters};
 }
@@ -111,9 +106,6 @@ void MatchRunner::run(const MatchCall& call, const MatchRequest& request, Dispar
     search->start();
   }
   set_needs(entry.abilities, job);
-  if (exposure_) {
-    estimate_exposure(*search, job);
-  }
   if (request.previous != nullptr && !choose_tiles(*search, job)) {
     return;
   }
@@ -157,38 +149,6 @@ bool MatchRunner::choose_tiles(MapSearch& search, SearchJob& job) const {
   return true;
 }
 
-/// Estimates each other image against the reference; σ is that of the noisiest.
-void MatchRunner::estimate_exposure(MapSearch& search, SearchJob& job) const {
-  job.clock.start("grey levels");
-  std::optional<double> sigma;
-  std::size_t other = 0;
-  for (const ExposureImages& images : search.exposure_images()) {
-    const PairExposure exposure = exposure_of(images);
-    job.images[++other].changes = exposure.of_right;
-    if (exposure.sigma_measurement) {
-      sigma = std::max(sigma.value_or(0), *exposure.sigma_measurement);
-    }
-    if (!job.report.exposure) {
-      job.report.exposure = exposure;
-    }
-  }
-  if (job.parameters.estimate_sigma_measurement && sigma) {
-    job.parameters.sigma_measurement = *sigma;
-  }
-  job.clock.start("prepare");
-}
-
-PairExposure MatchRunner::exposure_of(const ExposureImages& images) const {
-  const MethodParameters& parameters = options_.parameters;
-  const auto estimate = [&](const PairExposureEstimator& estimator) {
-    return estimator.estimate(*images.first, *images.second, parameters.colour,
-                              parameters.match_exposure);
-  };
-  return images.range == options_.disparities
-             ? estimate(*exposure_)
-             : estimate(PairExposureEstimator(images.range, execution_));
-}
-
 std::vector<scheduler::ChainPlan> MatchRunner::plans(const MatchCall& call,
                                                      std::span<const ExecutionOptions> executions) {
   const MatchRequest request;
@@ -209,11 +169,6 @@ std::vector<scheduler::ChainPlan> MatchRunner::plans(const MatchCall& call,
   return search->plans(job.task_of(call.reference_side), executions);
 }
 
-void MatchRunner::add_memory_use(MemoryUse& use) const {
-  if (exposure_) {
-    exposure_->add_memory_use(use);
-  }
-  pools_.add_memory_use(use);
-}
+void MatchRunner::add_memory_use(MemoryUse& use) const { pools_.add_memory_use(use); }
 
 }  // namespace vantage

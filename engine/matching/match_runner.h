@@ -6,7 +6,6 @@
 
 #include "engine/execution.h"
 #include "engine/image/memory_use.h"
-#include "engine/matching/pair_exposure.h"
 #include "engine/matching/search_table.h"
 
 namespace vantage {
@@ -16,12 +15,11 @@ struct MatchCall {
   std::vector<SearchedPhotograph> images;  ///< as SearchJob::images
   std::vector<double> baselines = {};      ///< of several images
   Side reference_side = Side::kLeft;       ///< as SearchJob::reference_side
-  const Rectifier* rectifier = nullptr;    ///< of a pair that is not rectified
-  const EpipolarGrids* grids = nullptr;    ///< likewise
+  const EpipolarGrids* grids = nullptr;    ///< of a pair that is not rectified
 };
 
 /// What all searches have in common, around the one that serves a call: what it refuses, the demand
-/// for memory, grey levels, tiles kept from the pair before, deferral, which maps are computed for
+/// for memory, tiles kept from the pair before, deferral, which maps are computed for
 /// the cross-check, and the report. Thread rule: run() may be called concurrently for different
 /// results.
 class MatchRunner {
@@ -42,13 +40,10 @@ class MatchRunner {
   [[nodiscard]] SearchJob job_of(const MatchCall& call, const MatchRequest& request,
                                  DisparityMaps& maps, MatchReport& report, StageClock& clock) const;
   [[nodiscard]] bool choose_tiles(MapSearch& search, SearchJob& job) const;
-  void estimate_exposure(MapSearch& search, SearchJob& job) const;
-  [[nodiscard]] PairExposure exposure_of(const ExposureImages& images) const;
 
   const ResolvedMatchOptions& options_;
   Execution& execution_;
   SearchPools pools_;
-  std::unique_ptr<PairExposureEstimator> exposure_;  ///< null: nothing is estimated
 };
 
 }  // namespace vantage

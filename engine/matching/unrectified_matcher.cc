@@ -29,13 +29,12 @@ void UnrectifiedMatcher::validate(MatchOptions options) {
 
 UnrectifiedMatcher::UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier,
                                        Execution& execution)
-    : UnrectifiedMatcher(options, rectifier, epipolar_grids(rectifier, execution), execution) {}
+    : UnrectifiedMatcher(options, epipolar_grids(rectifier, execution), execution) {}
 
-UnrectifiedMatcher::UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier,
+UnrectifiedMatcher::UnrectifiedMatcher(const MatchOptions& options,
                                        std::shared_ptr<const EpipolarGrids> grids,
                                        Execution& execution)
     : in_force_(along_lines(options)),
-      rectifier_(rectifier),
       grids_(std::move(grids)),
       runner_(std::make_unique<MatchRunner>(in_force_, execution)) {}
 
@@ -45,7 +44,7 @@ void UnrectifiedMatcher::match(const Photograph& left, const Photograph& right,
                                const UnrectifiedRequest& request, DisparityMaps& maps,
                                MatchReport* report) const {
   require_equal_sizes(left, "left image", right, "right image");
-  runner_->run({.images = {{&left}, {&right}}, .rectifier = &rectifier_, .grids = grids_.get()},
+  runner_->run({.images = {{&left}, {&right}}, .grids = grids_.get()},
                {.left = request.left, .right = request.right, .confidence = request.confidence},
                maps, report);
 }

@@ -39,9 +39,9 @@ class UnrectifiedMatcher {
   /// Throws UsageError as the constructor does, but for a range that is to be found.
   static void validate(MatchOptions options);
 
-  /// The same with grids of `rectifier` that others use, too.
-  UnrectifiedMatcher(const MatchOptions& options, const Rectifier& rectifier,
-                     std::shared_ptr<const EpipolarGrids> grids, Execution& execution);
+  /// The same with the grids of a rectifier that others use, too.
+  UnrectifiedMatcher(const MatchOptions& options, std::shared_ptr<const EpipolarGrids> grids,
+                     Execution& execution);
 
   /// Photographs of the rectifier's size. Always makes the masks. Errors as StereoMatcher::match().
   void match(const Photograph& left, const Photograph& right, const UnrectifiedRequest& request,
@@ -51,7 +51,6 @@ class UnrectifiedMatcher {
 
  private:
   ResolvedMatchOptions in_force_;
-  const Rectifier& rectifier_;
   std::shared_ptr<const EpipolarGrids> grids_;
   std::unique_ptr<MatchRunner> runner_;
 };

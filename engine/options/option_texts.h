@@ -26,15 +26,12 @@ inline constexpr std::array kOptionTexts = {
                "Compare colour images by luma, or by the mean of the costs of their channels"},
     OptionText{"truncation", "T",
                "With cost truncated: maximum difference in grey levels, above 0"},
-    OptionText{"match-exposure", "estimated|none",
-               "Match the brightness of the right image to that of the left one before comparing, "
-               "by a gain and an offset estimated from each pair"},
-    OptionText{"sigma-measurement", "S|estimated",
-               "With cost contaminated, aggregation bayes or certainty entropy: "
-               "standard deviation of the noise, above 0, in the unit of the cost (grey levels; "
-               "with census costs, differing neighbours); estimated: from each pair",
-               "{}; with cost gradient and certainty entropy a quarter "
-               "of the gradient filter's response to a slope of one grey level per pixel"},
+    OptionText{"sigma-measurement", "S",
+               "With cost contaminated, aggregation bayes or certainty entropy: standard deviation "
+               "of the noise, above 0, in the unit of the cost (grey levels; with census costs, "
+               "differing neighbours)",
+               "{}; with cost gradient and certainty entropy a quarter of the gradient filter's "
+               "response to a slope of one grey level per pixel"},
     OptionText{"epsilon-measurement", "E",
                "With cost contaminated or aggregation bayes: share of outliers, above "
                "0 and below 1"},

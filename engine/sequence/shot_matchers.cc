@@ -14,10 +14,9 @@ ShotMatchers::ShotMatchers(const MatchOptions& options, const ShotTable* shots,
                            const Rectifier* rectifier, Execution& execution)
     : options_(options),
       shots_(shots),
-      rectifier_(rectifier),
       grids_(rectifier != nullptr ? epipolar_grids(*rectifier, execution) : nullptr),
       execution_(execution) {
-  latest_.push_back(std::make_shared<const ShotMatcher>(options_, rectifier_, grids_, execution_));
+  latest_.push_back(std::make_shared<const ShotMatcher>(options_, grids_, execution_));
 }
 
 std::shared_ptr<const ShotMatcher> ShotMatchers::of(
@@ -36,7 +35,7 @@ std::shared_ptr<const ShotMatcher> ShotMatchers::of(
   }
   MatchOptions options = options_;
   options.disparities = range;
-  latest_.push_front(std::make_shared<const ShotMatcher>(options, rectifier_, grids_, execution_));
+  latest_.push_front(std::make_shared<const ShotMatcher>(options, grids_, execution_));
   if (latest_.size() > kKept) {
     latest_.pop_back();
   }

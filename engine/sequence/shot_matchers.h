@@ -14,12 +14,12 @@ namespace vantage {
 
 /// Options of a run with the range to search in one shot, and their matcher.
 struct ShotMatcher {
-  /// `rectifier` and `grids`: of photographs that are not rectified; null: rows are searched.
-  ShotMatcher(const MatchOptions& of_shot, const Rectifier* rectifier,
-              const std::shared_ptr<const EpipolarGrids>& grids, Execution& execution)
+  /// `grids`: of photographs that are not rectified; null: rows are searched.
+  ShotMatcher(const MatchOptions& of_shot, const std::shared_ptr<const EpipolarGrids>& grids,
+              Execution& execution)
       : options(of_shot), matcher(of_shot, execution) {
-    if (rectifier != nullptr) {
-      unrectified.emplace(of_shot, *rectifier, grids, execution);
+    if (grids != nullptr) {
+      unrectified.emplace(of_shot, grids, execution);
     }
   }
 
@@ -32,8 +32,8 @@ struct ShotMatcher {
 /// concurrently.
 class ShotMatchers {
  public:
-  /// `shots` is null if all frames are searched in the range of `options`; `rectifier` as for
-  /// ShotMatcher. All must outlive this.
+  /// `shots` is null if all frames are searched in the range of `options`; `rectifier` if pairs are
+  /// rectified. All must outlive this.
   ShotMatchers(const MatchOptions& options, const ShotTable* shots, const Rectifier* rectifier,
                Execution& execution);
 
@@ -47,7 +47,6 @@ class ShotMatchers {
  private:
   const MatchOptions& options_;
   const ShotTable* shots_;
-  const Rectifier* rectifier_;
   std::shared_ptr<const EpipolarGrids> grids_;  ///< null: rows are searched
   Execution& execution_;
   mutable std::mutex mutex_;

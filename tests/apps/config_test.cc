@@ -31,8 +31,6 @@ TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
       words("match a.png b.png -o o.pfm --selection symmetric --occlusion-penalty 7.5"),
       {"match", "a.png", "b.png", "-o", "o.pfm", "--prior", "quadratic", "--sigma-prior", "0.7"},
       {"match", "a.png", "b.png", "-o", "o.pfm", "--prior", "impulse", "--epsilon-prior", "0.001"},
-      words("match a.png b.png -o o.pfm --method bayes --sigma-measurement estimated "
-            "--match-exposure estimated"),
       words("match a.png b.png c.png -o o.pfm --baselines=-1,2.5 --method local-stopping "
             "--certainty entropy --lambda 0.1 --cost truncated --truncation 12 --edge-weight 0.3 "
             "--edge-diffusion 5"),

@@ -63,12 +63,9 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--method", "bayes", "--sigma-measurement=-2"}, "sigma-measurement is -2, expected"},
       {{"--method", "bayes", "--epsilon-measurement", "0"}, "epsilon-measurement is 0, expected"},
       {{"--sigma-measurement", "loud"}, "--sigma-measurement is 'loud', expected a number"},
-      {{"--method", "bayes", "--cost", "census", "--sigma-measurement", "estimated"},
-       "sigma-measurement is estimated, which gives grey levels"},
       {{"--cross-check-level", "-1"}, "cross-check-level is -1, expected a level from 0 to 9"},
       {{"--method", "ssd", "--cross-check-level", "1"},
        "cross-check-level is 1, expected 0: only aggregation bayes with levels"},
-      {{"--match-exposure", "on"}, "--match-exposure is 'on', expected one of estimated|none"},
       {{"--cost", "truncated", "--truncation", "0"}, "truncation is 0, expected a number of grey"},
       {{"--method", "gradient", "--alpha", "-1"}, "alpha is -1, expected a number of at least 0"},
       {{"--method", "gradient", "--aggregation-sigma", "0.4"}, "from 0.5 to 16"},
@@ -258,20 +255,6 @@ TEST_F(MatchCommandOptions, ReportShowsWhatWasSetAndWhatIsInForce) {
                             "work_ratio", "scratch_bytes", "stored_rows"}) {
       EXPECT_TRUE(pass.contains(key)) << key;
     }
-  }
-}
-
-TEST_F(MatchCommandOptions, ReportShowsWhatWasEstimated) {
-  succeeds(match(folder_ / "map.pfm",
-                 {"--method", "bayes", "--match-exposure", "estimated", "--sigma-measurement",
-                  "estimated", "--report", folder_ / "r.json"}));
-  const auto report = read_json(folder_ / "r.json");
-  EXPECT_EQ(report["settings"]["sigma-measurement"], "estimated");
-  EXPECT_EQ(report["settings"]["resolved"]["match-exposure"], "estimated");
-  const auto& levels = report["results"]["grey_levels"];
-  EXPECT_GE(levels["matches"], 0);
-  for (const char* key : {"luma", "channels", "sigma_measurement"}) {
-    EXPECT_TRUE(levels.contains(key)) << key;
   }
 }
 

@@ -395,20 +395,6 @@ TEST(MatchOptions, CombinationsThatMakeNoSenseAreRefusedWithTheReason) {
   EXPECT_THAT(complaint(options), HasSubstr("expected certainty entropy"));
   options.parameters.certainty = Certainty::kEntropy;
   EXPECT_EQ(complaint(options), "");
-  options.parameters.estimate_sigma_measurement = true;
-  for (const MatchCost cost : {MatchCost::kGradient, MatchCost::kCensus, MatchCost::kRayCensus}) {
-    options.parameters.cost = cost;
-    options.method = MatchMethod::kLocalStopping;
-    options.parameters.certainty = Certainty::kEntropy;
-    EXPECT_THAT(complaint(options), HasSubstr("sigma-measurement is estimated"));
-    options.method = MatchMethod::kSsd;  // without σM
-    options.parameters.certainty.reset();
-    EXPECT_THAT(complaint(options), HasSubstr("sigma-measurement is set but has no effect"));
-    options.method = MatchMethod::kBayes;
-    EXPECT_THAT(complaint(options), HasSubstr("expected a number"));
-  }
-  options.parameters.cost = MatchCost::kContaminated;
-  EXPECT_EQ(complaint(options), "");
 }
 
 }  // namespace vantage::method_parameters_test

@@ -13,7 +13,6 @@
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/options/method_fields.h"
 #include "engine/matching/options/method_names.h"
-#include "engine/matching/pair_exposure.h"
 #include "engine/matching/search/coarse_to_fine/level_search.h"
 #include "engine/refinement/refinement_options.h"
 #include "tests/engine/engine_test.h"
@@ -54,19 +53,11 @@ class Maps {
   }
 
  private:
-  Bytes made_by(MethodParameters parameters) {
+  Bytes made_by(const MethodParameters& parameters) {
     MatchOptions options;  // of which only the range of candidates is made
     options.method = MatchMethod::kSsd;
     options.disparities = kRange;
     options.parameters = as_overrides(parameters);
-    IntensityChanges of_right;
-    if (uses_pair_exposure(parameters)) {
-      const PairExposure levels = estimated(parameters.match_exposure);
-      of_right = levels.of_right;
-      if (parameters.estimate_sigma_measurement) {
-        parameters.sigma_measurement = levels.sigma_measurement.value();
-      }
-    }
     const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, kWidth, kHeight);
     CostImage left;
     CostImage right;
@@ -74,7 +65,7 @@ class Maps {
     const auto margins = has_windows ? window_margins(geometry) : geometry;
     left.prepare(pair_.left, parameters, margins, {true, false, false}, execution_);
     right.prepare(pair_.right, parameters, margins,
-                  {false, true, has_windows, of_right, geometry.steps_per_px}, execution_);
+                  {false, true, has_windows, geometry.steps_per_px}, execution_);
     ChainInput input{nullptr, &left, {CostPartner{&right}}};
     EdgeWeightLevels edges;
     input.edges = edges.prepare(pair_.left, parameters, execution_);
@@ -92,18 +83,6 @@ class Maps {
       }
     }
     return bytes;
-  }
-
-  /// As if estimated from the pair, which is too small for that.
-  static PairExposure estimated(bool match_exposure) {
-    PairExposure levels;
-    levels.sigma_measurement = 7.5;
-    if (match_exposure) {
-      levels.has_intensity_change = true;
-      levels.of_right.luma = {.gain = 4.0F / 3, .offset = -27};
-      levels.of_right.channels.fill(levels.of_right.luma);
-    }
-    return levels;
   }
 
   Execution execution_{{.threads = 1}};
@@ -133,7 +112,6 @@ const std::map<std::string_view, Changes>& changes() {
       {"cost", values_of<MatchCost>(&P::cost, {MatchCost::kBirchfieldTomasi, MatchCost::kCensus})},
       {"colour", values_of<ColourUse>(&P::colour, {ColourUse::kChannels})},
       {"truncation", values_of<double>(&P::truncation, {3, 11})},
-      {"match-exposure", values_of<bool>(&P::match_exposure, {true})},
       {"sigma-measurement", values_of<double>(&P::sigma_measurement, {2, 14})},
       {"epsilon-measurement", values_of<double>(&P::epsilon_measurement, {0.01, 0.4})},
       {"census-thresholds", values_of<int>(&P::census_thresholds, {3})},
@@ -212,7 +190,6 @@ MethodParameters parameters_of(const SampleRow& row) {
   }
   overrides.edge_weight = situation.edge_weight;
   overrides.certainty = situation.certainty;
-  overrides.estimate_sigma_measurement = false;
   if (row[2] == 0 && row[0] % 2 == 1) {
     overrides.selection = Selection::kScanline;
   }
@@ -311,8 +288,6 @@ TEST(ParameterReaders, AreNamedFromTheTables) {
   }
   EXPECT_EQ(names["truncation"], "the cost truncated");
   EXPECT_EQ(names["alpha"], "the cost gradient (method gradient)");
-  EXPECT_EQ(names["match-exposure"],
-            "every cost but census and census-rays, whose codes no exposure changes");
   EXPECT_EQ(names["sigma-measurement"],
             "the cost contaminated, the aggregation bayes, and local-stopping with "
             "certainty entropy");

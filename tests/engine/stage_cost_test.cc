@@ -244,7 +244,8 @@ TEST_F(StageCost, EqualsPlainCellsForOtherBaselines) {
         test.partners[0].ratio = ratio;
         // Thirds are not exact.
         const auto costs = keys_in(cost_table(), [&](const MatchingCost& cost) {
-          return ratio != 1. / 3 || cost.unit != ResidualUnit::kCensusBits;
+          return ratio != 1. / 3 ||
+                 (cost.key != MatchCost::kCensus && cost.key != MatchCost::kRayCensus);
         });
         ASSERT_NO_FATAL_FAILURE(expect_plain_cells(test, costs));
       }

@@ -156,12 +156,12 @@ TEST_F(TuningKeyTest, HasEveryFieldThatChangesTheWork) {
                                                 "subpixel"};
   std::set<std::string_view> options;
   std::set<std::string_view> in_key;
-  for (const bool has_intensity_change : {false, true}) {
+  for (const bool has_levels : {false, true}) {
     for (const MatchMethod method :
          {MatchMethod::kSsd, MatchMethod::kGradient, MatchMethod::kBayes}) {
       match_.method = method;
       match_.parameters = {};
-      if (has_intensity_change) {
+      if (has_levels) {
         match_.parameters.cost = MatchCost::kRayCensus;
         match_.parameters.levels = 3;
         match_.parameters.candidate_blocks = 2;

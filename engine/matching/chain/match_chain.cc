@@ -18,7 +18,7 @@ namespace vantage {
 bool uses_column_ssd(const MethodParameters& parameters) {
   return cost_of(parameters).has_column_sums && aggregation_of(parameters).has_windows &&
          parameters.colour == ColourUse::kLuma && parameters.levels == 1 &&
-         !parameters.match_exposure && steps_per_px(parameters) == 1;
+         steps_per_px(parameters) == 1;
 }
 
 bool can_share_costs(const MethodParameters& parameters, scheduler::Extent image, int candidates) {

@@ -46,7 +46,7 @@ MatchingCost birchfield_tomasi_cost() {
   return {.key = MatchCost::kBirchfieldTomasi,
           .name = "birchfield-tomasi",
           .description = "smallest absolute difference within half a pixel",
-          .options = {"match-exposure"},
+          .options = {},
           .jump_limit = 10,
           .occlusion_penalty = 5,
           .make_planes = make_planes_as<SamplingPlanes>,

@@ -46,7 +46,6 @@ MatchingCost census_cost() {
           .name = "census",
           .description = "differing bits of census codes of 9x7 pixels",
           .options = {},
-          .unit = ResidualUnit::kCensusBits,
           .jump_limit = 10,
           .occlusion_penalty = 15,
           .make_planes = make_planes_as<CensusPlanes>,

@@ -46,7 +46,7 @@ MatchingCost contaminated_cost() {
   return {.key = MatchCost::kContaminated,
           .name = "contaminated",
           .description = "log-likelihood, Gaussian noise with outliers",
-          .options = {"match-exposure", "sigma-measurement", "epsilon-measurement"},
+          .options = {"sigma-measurement", "epsilon-measurement"},
           .jump_limit = 1.5,
           .occlusion_penalty = 1,
           .make_planes = make_planes_as<GreyPlanes>,

@@ -48,7 +48,6 @@ void CostImage::prepare_phase(const Phase& phase, const MethodParameters& parame
                               const kernels::CandidateGeometry& geometry, const CostImageUse& use,
                               Execution& execution) {
   planes_->prepare({phase.photograph,
-                    use.intensity_changes,
                     channels_,
                     margins_of(geometry),
                     use.as_partner_of_left,

@@ -7,7 +7,6 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
-#include "engine/matching/costs/intensity_change.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
 
@@ -23,8 +22,6 @@ struct CostImageUse {
   /// disparities lie at increasing addresses.
   bool as_partner_of_left = true;
   bool as_partner_of_right = true;
-  /// Applied to the intensities before any feature is computed.
-  IntensityChanges intensity_changes = {};
   /// As a partner: samples per pixel, ≥ 1 (sample_phases()). Between pixels they are those of the
   /// image resampled there, see kernels/row_resampling.
   int phases = 1;

@@ -6,16 +6,6 @@
 namespace vantage {
 namespace {
 
-void change_intensities(const IntensityChange& change, int width, float* intensities) {
-  if (change.is_none()) {
-    return;
-  }
-  const auto gain = static_cast<float>(change.gain);
-  const auto offset = static_cast<float>(change.offset);
-  std::transform(intensities, intensities + width, intensities,
-                 [&](float level) { return gain * level + offset; });
-}
-
 /// Calls write(row) for the row of whole columns, then moves it to the columns of the phase.
 template <typename Write>
 void write_at_phase(const PlaneSource& source, float* intensities, const Write& write) {
@@ -44,10 +34,7 @@ PlaneMargins margins_of(const kernels::CandidateGeometry& geometry) {
 }
 
 void PlaneSource::luma_row(int y, float* intensities) const {
-  write_at_phase(*this, intensities, [&](float* row) {
-    intensity_row(photograph, y, row);
-    change_intensities(intensity_changes.luma, width(), row);
-  });
+  write_at_phase(*this, intensities, [&](float* row) { intensity_row(photograph, y, row); });
 }
 
 void PlaneSource::channel_row(std::size_t channel, int y, float* intensities) const {
@@ -57,7 +44,6 @@ void PlaneSource::channel_row(std::size_t channel, int y, float* intensities) co
   }
   write_at_phase(*this, intensities, [&](float* row) {
     channel_intensity_row(photograph, static_cast<int>(channel), y, row);
-    change_intensities(intensity_changes.channels[channel], width(), row);
   });
 }
 

@@ -9,7 +9,6 @@
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/costs/image_gradient.h"
-#include "engine/matching/costs/intensity_change.h"
 #include "engine/matching/costs/intensity_planes.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
@@ -37,7 +36,6 @@ struct SamplePhase {
 /// A photograph as costs read it, and the shape of the planes computed from it.
 struct PlaneSource {
   const Photograph& photograph;
-  const IntensityChanges& intensity_changes;
   int channels;  ///< 1 (luma) or 3
   PlaneMargins margins;
   bool has_mirrored;

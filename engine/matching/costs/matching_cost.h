@@ -76,9 +76,6 @@ class CostModel {
   kernels::ContaminatedGaussian measurement_;
 };
 
-/// Unit of residuals and therefore of σM.
-enum class ResidualUnit { kGreyLevels, kGradient, kCensusBits };
-
 /// Energies −ln p0 in bytes, for costs with few values: luma, one partner, the map's own baseline.
 struct ByteEnergies {
   float (*nats_per_step)(const MethodParameters& parameters) = nullptr;
@@ -96,10 +93,9 @@ struct MatchingCost {
   MatchCost key = MatchCost::kSquared;
   std::string_view name;         ///< in options, messages and tuning keys
   std::string_view description;  ///< one line of help
-  /// Options that affect its energies, including match-exposure.
+  /// Options that affect its energies.
   std::vector<std::string_view> options;
 
-  ResidualUnit unit = ResidualUnit::kGreyLevels;
   /// Energies are −evidence: of either sign, compared with 0, without a scale of their own;
   /// likelihoods compare each candidate with the best one.
   bool is_evidence = false;

@@ -59,7 +59,7 @@ void RayCensusPlanes::prepare(const PlaneSource& source, const MethodParameters&
   });
   const auto* const image = std::get_if<Image<std::uint8_t>>(&source.photograph.pixels);
   if (image != nullptr && image->channels() == 1 && source.channels == 1 && thresholds == 1 &&
-      source.intensity_changes.luma.is_none() && source.phase.is_whole()) {
+      source.phase.is_whole()) {
     prepare_byte_codes(source, *image);
   } else {
     prepare_codes(source, thresholds);
@@ -117,7 +117,6 @@ MatchingCost ray_census_cost() {
       .name = "census-rays",
       .description = "census codes of 24 pixels in eight directions",
       .options = {"census-thresholds"},
-      .unit = ResidualUnit::kCensusBits,
       .jump_limit = 8,
       .occlusion_penalty = 6,
       .make_planes = make_planes_as<RayCensusPlanes>,

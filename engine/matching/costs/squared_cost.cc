@@ -34,7 +34,7 @@ MatchingCost squared_cost() {
   return {.key = MatchCost::kSquared,
           .name = "squared",
           .description = "squared difference of grey levels",
-          .options = {"match-exposure"},
+          .options = {},
           .has_column_sums = true,
           .max_contrast = kContrastIntensity * kContrastIntensity,
           .jump_limit = 200,

@@ -19,13 +19,9 @@ OptionValues values_of(const MethodParameters& in_force, const MethodOverrides& 
         if (field.readers.are_in_force == reads && !reads(in_force, field.option)) {
           return;
         }
-        if constexpr (std::is_same_v<Value, bool>) {
-          if (value && field.is_read(in_force)) {
-            values.set(field.option, "estimated", chosen.has_value());
-          }
-        } else if constexpr (std::is_enum_v<Value>) {
+        if constexpr (std::is_enum_v<Value>) {
           values.set(field.option, name_of(value), chosen.has_value());
-        } else {
+        } else if constexpr (!std::is_same_v<Value, bool>) {  // no rule is about one
           values.set(field.option, value, chosen.has_value());
         }
       },

@@ -45,12 +45,8 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"cost", readers::kAll}, options.cost...);
   visit(Field{"colour", readers::kAll}, options.colour...);
   visit(Field{"truncation", readers::kCosts, kGreyLevels}, options.truncation...);
-  visit(Field{"match-exposure", readers::kExposure}, options.match_exposure...);
-  // One option sets two fields: a number, or that it is estimated.
   visit(Field{"sigma-measurement", readers::kSigmaMeasurement, kGreyLevels},
         options.sigma_measurement...);
-  visit(Field{"sigma-measurement", readers::kSigmaMeasurement},
-        options.estimate_sigma_measurement...);
   visit(Field{"epsilon-measurement", readers::kEpsilonMeasurement, kProbability},
         options.epsilon_measurement...);
   visit(Field{"census-thresholds",

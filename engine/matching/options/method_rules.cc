@@ -166,11 +166,6 @@ bool uses_sigma_measurement(const MethodParameters& parameters) {
          (aggregation_of(parameters).reads(kOption) && !is_idle);
 }
 
-bool uses_pair_exposure(const MethodParameters& parameters) {
-  return (parameters.match_exposure && cost_of(parameters).reads("match-exposure")) ||
-         (parameters.estimate_sigma_measurement && uses_sigma_measurement(parameters));
-}
-
 void validate(const MethodParameters& parameters) {
   require_within_limits(parameters);
   validate_step(parameters);

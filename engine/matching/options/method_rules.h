@@ -35,7 +35,4 @@ bool can_reduce_search(const MethodParameters& parameters);
 /// Whether σM is used.
 bool uses_sigma_measurement(const MethodParameters& parameters);
 
-/// Whether anything is estimated from each pair's intensities.
-bool uses_pair_exposure(const MethodParameters& parameters);
-
 }  // namespace vantage

@@ -11,12 +11,12 @@
 namespace vantage {
 namespace {
 
-/// Names of the entries that read an option, or of the others.
+/// Names of the entries that read an option.
 template <typename Table>
-std::vector<std::string_view> names_in(const Table& table, std::string_view option, bool reads) {
+std::vector<std::string_view> names_in(const Table& table, std::string_view option) {
   std::vector<std::string_view> names;
   for (const auto& entry : table) {
-    if (entry.reads(option) == reads) {
+    if (entry.reads(option)) {
       names.push_back(entry.name);
     }
   }
@@ -31,13 +31,11 @@ std::string counted(std::string_view noun, const std::vector<std::string_view>& 
 }  // namespace
 
 std::string names_of(const ParameterReaders& readers, std::string_view option) {
-  const auto costs = names_in(cost_table(), option, true);
-  const auto aggregations = names_in(aggregation_table(), option, true);
-  return fmt::format(
-      fmt::runtime(readers.text), fmt::arg("costs", counted("cost", costs)),
-      fmt::arg("other_costs", word_list(names_in(cost_table(), option, false), "and")),
-      fmt::arg("names", word_list(aggregations, "and")),
-      fmt::arg("aggregations", counted("aggregation", aggregations)));
+  const auto costs = names_in(cost_table(), option);
+  const auto aggregations = names_in(aggregation_table(), option);
+  return fmt::format(fmt::runtime(readers.text), fmt::arg("costs", counted("cost", costs)),
+                     fmt::arg("names", word_list(aggregations, "and")),
+                     fmt::arg("aggregations", counted("aggregation", aggregations)));
 }
 
 bool reads(const MethodParameters& parameters, std::string_view option) {

@@ -10,8 +10,8 @@ namespace vantage {
 /// What reads a parameter of a method. The tables of costs and aggregations (cost_table,
 /// aggregation_table) list the options that these read; all further conditions are only here.
 struct ParameterReaders {
-  /// For messages. {costs}, {other_costs}: costs that do and do not read the option; {names}: the
-  /// aggregations that do; {aggregations}: the same after "aggregation" or "aggregations".
+  /// For messages. {costs}: those that read the option; {names}: the aggregations that do;
+  /// {aggregations}: the same after "aggregation" or "aggregations".
   std::string_view text;
   /// Whether results of these parameters can depend on the option.
   bool (*are_in_force)(const MethodParameters& in_force, std::string_view option);
@@ -40,8 +40,6 @@ inline constexpr ParameterReaders kGradientNorm = {
     [](const MethodParameters& p, std::string_view option) {
       return reads(p, option) && p.gradient_components == GradientComponents::kXy;
     }};
-inline constexpr ParameterReaders kExposure = {
-    "every cost but {other_costs}, whose codes no exposure changes", reads};
 inline constexpr ParameterReaders kSigmaMeasurement = {
     "the {costs}, the aggregation bayes, and local-stopping with certainty entropy",
     [](const MethodParameters& p, std::string_view) { return uses_sigma_measurement(p); }};

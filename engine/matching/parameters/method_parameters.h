@@ -93,11 +93,6 @@ struct MethodParametersOf {
   Field<double> sigma_measurement = by_default<Field>(5.0);
   /// εM, inside (0, 1): contaminated cost, Bayes.
   Field<double> epsilon_measurement = by_default<Field>(0.1);
-  /// σM is estimated from each pair (pair_exposure), with sigma_measurement as fallback.
-  Field<bool> estimate_sigma_measurement = by_default<Field>(false);
-  /// The right image's intensities are matched to the left's before they are compared, with gain
-  /// and offset estimated from each pair (pair_exposure).
-  Field<bool> match_exposure = by_default<Field>(false);
   /// Ray census: number of thresholds a neighbour is compared with, 1 or 3.
   Field<int> census_thresholds = by_default<Field>(1);
   /// Gradient evidence: weight of the gradients' difference, ≥ 0.

@@ -9,7 +9,6 @@
 #include "engine/image/disparity_maps.h"
 #include "engine/image/photograph.h"
 #include "engine/image/side.h"
-#include "engine/matching/costs/intensity_change.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/search/deferred_match.h"
 #include "engine/matching/search/match_report.h"
@@ -18,7 +17,6 @@
 #include "engine/matching/search/search_plan.h"
 #include "engine/matching/search/stage_clock.h"
 #include "engine/rectification/epipolar_grid.h"
-#include "engine/rectification/rectifier.h"
 #include "engine/refinement/refine_maps.h"
 
 namespace vantage {
@@ -41,7 +39,6 @@ struct SearchAbilities {
 struct SearchedPhotograph {
   const Photograph* photograph;
   double place = 0;  ///< 0: the reference; in the distance of the first other image, of its sign
-  IntensityChanges changes = {};  ///< to the reference's grey levels
 };
 
 /// What is computed of an image's map: the map, and what is used to check the other one.
@@ -78,13 +75,11 @@ struct SearchJob {
   StageClock& clock;
   std::vector<SearchedPhotograph> images;  ///< a pair: left, right; several: the reference first
   Side reference_side = Side::kLeft;       ///< several: kLeft if the second one is to its right
-  // Of a pair that is not rectified.
-  const Rectifier* rectifier = nullptr;
-  const EpipolarGrids* grids = nullptr;
+  const EpipolarGrids* grids = nullptr;    ///< of a pair that is not rectified
 
-  MethodParameters parameters;  ///< those in force, plus the values estimated from the images
+  MethodParameters parameters;  ///< those in force, but for what the search does without
   SearchPlan plan = {};
-  std::vector<MapTask> tasks = {};        ///< in the order of their searches
+  std::vector<MapTask> tasks = {};   ///< in the order of their searches
   PreviousMaps* previous = nullptr;  ///< of both maps; null: everything is searched
   int check_level = 0;               ///< level that maps are checked against; 0: the maps
 
@@ -103,13 +98,6 @@ struct SearchJob {
   [[nodiscard]] MapTask& task_of(Side side) { return tasks[tasks.front().side == side ? 0 : 1]; }
 };
 
-/// Images whose grey levels are compared: each pair makes the changes of one image after the first.
-struct ExposureImages {
-  const Photograph* first;
-  const Photograph* second;
-  DisparityRange range;  ///< x of the first image − x of the second
-};
-
 /// A way to find the winners of maps, at work on one call. Its functions are called in this order,
 /// those without a comment "always" only if they are needed.
 class MapSearch {
@@ -125,7 +113,6 @@ class MapSearch {
     deferred = {};
     start();
   }
-  virtual std::vector<ExposureImages> exposure_images() { return {}; }
   /// 8-bit grey, half the size of both images, in which changes since the pair before are found.
   virtual std::array<const Photograph*, 2> half_size_images() { return {}; }
   /// Leaves the call for later.

@@ -32,14 +32,6 @@ void EpipolarSearch::start() {
   }
 }
 
-std::vector<ExposureImages> EpipolarSearch::exposure_images() {
-  for (const Side side : {Side::kLeft, Side::kRight}) {
-    job_.rectifier->apply(*job_.images[index_of(side)].photograph, side, rectified_[index_of(side)],
-                          job_.execution);
-  }
-  return {{&rectified_[0], &rectified_[1], job_.options.disparities}};
-}
-
 void EpipolarSearch::search(MapTask& task) {
   if (task.need.any()) {
     prepare_map(task);
@@ -54,12 +46,10 @@ void EpipolarSearch::prepare_map(const MapTask& task) {
       candidate_geometry(job_.options, Side::kLeft, task.image->width(), task.image->height());
   constexpr int kPhases = EpipolarGrid::kPhases;
   own_.images.resize(1 + kPhases);
-  own_.images[0].prepare(*task.image, job_.parameters, geometry,
-                         {.as_reference = true,
-                          .as_partner_of_left = false,
-                          .as_partner_of_right = false,
-                          .intensity_changes = job_.images[index_of(task.side)].changes},
-                         job_.execution);
+  own_.images[0].prepare(
+      *task.image, job_.parameters, geometry,
+      {.as_reference = true, .as_partner_of_left = false, .as_partner_of_right = false},
+      job_.execution);
   for (int down = 0; down < kPhases; ++down) {
     std::array<Photograph, kPhases> at_phases;
     for (int along = 0; along < kPhases; ++along) {
@@ -70,8 +60,7 @@ void EpipolarSearch::prepare_map(const MapTask& task) {
         at_phases, job_.parameters, geometry,
         {.as_reference = false,
          .as_partner_of_left = task.side == Side::kLeft,
-         .as_partner_of_right = task.side == Side::kRight,
-         .intensity_changes = other.changes},
+         .as_partner_of_right = task.side == Side::kRight},
         job_.execution);
   }
   input_ = {nullptr, &own_.images[0], {{.image = &own_.images[1], .epipolar = &grid}}};

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <array>
-
-#include "engine/image/photograph.h"
 #include "engine/matching/search/level_map_search.h"
 
 namespace vantage {
@@ -15,7 +12,6 @@ class EpipolarSearch final : public LevelMapSearch {
   static SearchPlan plan(const ResolvedMatchOptions& options, const MatchSize& size);
 
   void start() override;
-  std::vector<ExposureImages> exposure_images() override;
   void prepare() override {}  // both maps need all of the memory
   void search(MapTask& task) override;
   void refine(RefinementWork& work) override;
@@ -26,8 +22,7 @@ class EpipolarSearch final : public LevelMapSearch {
   void check(const MapTask& task, const DisparityMap& other_px) const;
 
   LevelMemory own_;
-  ChainInput input_;                     ///< of the map being computed
-  std::array<Photograph, 2> rectified_;  ///< to compare grey levels
+  ChainInput input_;  ///< of the map being computed
 };
 
 }  // namespace vantage

@@ -41,12 +41,6 @@ void PairSearch::start() {
   add(other_side(first));
 }
 
-std::vector<ExposureImages> PairSearch::exposure_images() {
-  // Throws for the whole images: the bands' own message would name the size of the bands.
-  candidate_geometry(job_.options, Side::kLeft, job_.extent().columns, job_.extent().rows);
-  return {{job_.images[0].photograph, job_.images[1].photograph, job_.options.disparities}};
-}
-
 std::array<const Photograph*, 2> PairSearch::half_size_images() {
   for (const std::size_t i : {0, 1}) {
     own_.halves[i].prepare(*job_.images[i].photograph, 1, job_.execution);
@@ -97,7 +91,6 @@ void PairSearch::prepare_images(const kernels::CandidateGeometry& geometry) {
                 {.as_reference = needs_right,
                  .as_partner_of_left = needs_left,
                  .as_partner_of_right = has_windows,
-                 .intensity_changes = job_.images[1].changes,
                  .phases = phases},
                 job_.execution);
   inputs_ = {ChainInput{nullptr, &left, {CostPartner{&right}}},

@@ -26,7 +26,6 @@ class PairSearch final : public LevelMapSearch {
   static SearchPlan plan(const ResolvedMatchOptions& options, const MatchSize& size);
 
   void start() override;
-  std::vector<ExposureImages> exposure_images() override;
   std::array<const Photograph*, 2> half_size_images() override;
   void prepare() override;
   void search(MapTask& task) override;

@@ -68,21 +68,6 @@ void SeveralSearch::start() {
                  .volumes = job_.request.volumes}};
 }
 
-std::vector<ExposureImages> SeveralSearch::exposure_images() {
-  const double direction = job_.reference_side == Side::kLeft ? 1 : -1;
-  std::vector<ExposureImages> pairs;
-  for (std::size_t k = 1; k < job_.images.size(); ++k) {
-    // In units of x_reference − x_other.
-    const double ratio = job_.images[k].place * direction;
-    const auto [min, max] =
-        std::minmax({job_.options.disparities.min * ratio, job_.options.disparities.max * ratio});
-    pairs.push_back({job_.images.front().photograph,
-                     job_.images[k].photograph,
-                     {static_cast<int>(std::floor(min)), static_cast<int>(std::ceil(max))}});
-  }
-  return pairs;
-}
-
 void SeveralSearch::prepare() {
   prepare_map(job_.tasks.front(), 0);
   add_prior(job_.tasks.front().side, input_);
@@ -105,7 +90,6 @@ void SeveralSearch::prepare_map(const MapTask& task, std::size_t own) {
                            {.as_reference = is_own,
                             .as_partner_of_left = !is_own && is_ahead,
                             .as_partner_of_right = !is_own && !is_ahead,
-                            .intensity_changes = image.changes,
                             .phases = is_own ? 1 : sample_phases(ratio, geometry.steps_per_px)},
                            job_.execution);
     if (!is_own) {

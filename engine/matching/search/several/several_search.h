@@ -24,7 +24,6 @@ class SeveralSearch final : public LevelMapSearch {
   static SearchPlan plan(const ResolvedMatchOptions& options, const MatchSize& size);
 
   void start() override;
-  std::vector<ExposureImages> exposure_images() override;
   void prepare() override;
   void search(MapTask& task) override { search_levels(task, input_); }
   void refine(RefinementWork& work) override;
