@@ -2,13 +2,11 @@
 #include <fmt/ranges.h>
 
 #include <cstdio>
-#include <optional>
 
 #include "apps/commands/commands.h"
 #include "apps/settings/command_line.h"
 #include "engine/build_info.h"
 #include "engine/options/settings.h"
-#include "engine/profiling/machine_ceilings.h"
 #include "engine/simd.h"
 #include "scheduler/topology.h"
 
@@ -44,26 +42,6 @@ void print_table(const BuildInfo& build, const SystemInfo& system,
   fmt::print("caches             L1 {} KiB, L2 {} KiB, L3 {} KiB\n", machine.l1_data_bytes / kKib,
              machine.l2_bytes / kKib, machine.l3_bytes / kKib);
   fmt::print("memory             {} MiB\n", machine.memory_bytes / kKib / kKib);
-}
-
-void print_table(const MachineCeilings& ceilings) {
-  fmt::print("at best            one thread, {} threads\n", ceilings.threads);
-  fmt::print("  float arithmetic {:.0f}, {:.0f} GFLOP/s\n", ceilings.core_gflops,
-             ceilings.all_gflops);
-  fmt::print("  loads from L2    {:.0f}, {:.0f} GB/s\n", ceilings.core_l2_gb_per_s,
-             ceilings.all_l2_gb_per_s);
-  fmt::print("  memory (triad)   {:.1f}, {:.1f} GB/s\n", ceilings.core_memory_gb_per_s,
-             ceilings.all_memory_gb_per_s);
-}
-
-SettingValue ceilings_json(const MachineCeilings& ceilings) {
-  return {{"threads", ceilings.threads},
-          {"core_gflops", ceilings.core_gflops},
-          {"all_gflops", ceilings.all_gflops},
-          {"core_l2_gb_per_s", ceilings.core_l2_gb_per_s},
-          {"all_l2_gb_per_s", ceilings.all_l2_gb_per_s},
-          {"core_memory_gb_per_s", ceilings.core_memory_gb_per_s},
-          {"all_memory_gb_per_s", ceilings.all_memory_gb_per_s}};
 }
 
 SettingValue machine_json(const BuildInfo& build, const SystemInfo& system,
@@ -102,37 +80,21 @@ SettingValue machine_json(const BuildInfo& build, const SystemInfo& system,
 
 int command_info(const Arguments& arguments) {
   bool json = false;
-  bool measure = false;
   Settings settings(
       "info",
       "Prints the versions of the program and its libraries, the system, and what the "
       "program can use of this machine.");
   settings.flag("json", json, "Write JSON instead of a table");
-  settings.flag("measure", measure,
-                "Measure the peak performance of arithmetic, caches and memory (2 seconds)");
   if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
   const BuildInfo build = build_info();
   const SystemInfo system = system_info();
   const scheduler::Topology topology = scheduler::detect_topology();
-  std::optional<MachineCeilings> ceilings;
-  if (measure) {
-    constexpr double kSeconds = 2;
-    Execution execution({});
-    ceilings = measure_ceilings(execution, kSeconds);
-  }
   if (json) {
-    SettingValue document = machine_json(build, system, topology);
-    if (ceilings) {
-      document["ceilings"] = ceilings_json(*ceilings);
-    }
-    fmt::print("{}\n", document.dump(2));
+    fmt::print("{}\n", machine_json(build, system, topology).dump(2));
   } else {
     print_table(build, system, topology);
-    if (ceilings) {
-      print_table(*ceilings);
-    }
   }
   return kExitDone;
 }

@@ -114,12 +114,6 @@ TEST(SlowInfoCommand, TellsTheVersionAndTheInstructionSets) {
   EXPECT_GE(info["isa_built"].size(), info["isa_available"].size());
   EXPECT_EQ(info["isa"], info["isa_available"][0]);
   EXPECT_GE(info["hardware_threads"], 1);
-
-  const auto measured = nlohmann::json::parse(run_vantage({"info", "--json", "--measure"}).out);
-  for (const char* what : {"core_gflops", "all_gflops", "core_l2_gb_per_s", "all_l2_gb_per_s",
-                           "core_memory_gb_per_s", "all_memory_gb_per_s"}) {
-    EXPECT_GT(measured.at("ceilings").at(what).get<double>(), 0) << what;
-  }
 }
 
 }  // namespace vantage::command_generate_test

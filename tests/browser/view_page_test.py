@@ -205,7 +205,7 @@ class ViewPageTest(unittest.TestCase):
             self.arrives_at(tab, 0.25, 0.1)
             self.assertEqual(tab.evaluate("document.getElementById('mode').value"), "disparity")
         # What is out of range or nonsense is brought into range or left alone.
-        tab.evaluate("location.hash = 'x=99,y=zero,mode=upside-down,eyes=-3'")
+        tab.evaluate("location.hash = 'x=99,y=zero,mode=upside-down'")
         self.arrives_at(tab, 1.5, 0.1)
         self.assertEqual(tab.complaints(), [])
 
@@ -232,19 +232,9 @@ class ViewPageTest(unittest.TestCase):
         self.assertEqual(tab.evaluate("document.getElementById('sway').ariaPressed"), "true")
         self.assertEqual(tab.complaints(), [])
 
-    def test_a_head_tracker_moves_the_view(self):
-        tab = self.open("#x=0.5")
-        tab.evaluate("postMessage({viewX: 0.875, viewY: -7}, '*')")
-        self.arrives_at(tab, 0.875, -0.2)
-        for message in ["{viewX: 'NaN', viewY: null}", "{viewX: NaN}", "'text'", "null"]:
-            tab.evaluate(f"postMessage({message}, '*')")
-        tab.evaluate("postMessage({viewY: 0}, '*')")
-        self.arrives_at(tab, 0.875, 0)
-        self.assertEqual(tab.complaints(), [])
-
     def test_every_mode_draws_something_else(self):
         tab = self.open("#x=0.25")
-        modes = ["view", "disparity", "left", "right", "parallel", "crossed", "anaglyph", "cloud"]
+        modes = ["view", "disparity", "left", "right", "cloud"]
         drawn = {}
         for mode in modes:
             # In the frame in which the page draws, after it: the canvas still holds the picture.

@@ -3,17 +3,12 @@
 // The page: where the viewer is, what is shown, and who may say so.
 //
 // A position (x, y) is in baselines: x = 0 is the left camera, x = 1 the right one, y > 0 below them.
-// It comes from the mouse or a finger, the sliders, the keys, the tilt of a phone, or from outside:
-//
-//   page.contentWindow.postMessage({viewX: 0.4, viewY: 0.1}, "*");
-//
-// is all that a head tracker in a surrounding page has to do; either number may be left out.
+// It comes from the mouse or a finger, the sliders or the keys.
 //
 // The address may say what is shown, "page.html#x=0.5,y=0,mode=disparity" (or with ? and &):
 //   x, y     the position; the view then stands still until somebody moves it with the mouse
 //   mode     a value of the list of modes
 //   yaw, pitch, zoom   of the point cloud: degrees to the right and upwards, and how much nearer
-//   eyes     distance of the eyes in baselines, for the modes of two views
 //   sway=1   sways from the start;  bare=1  hides the controls
 //   render=native  renders a view for every x that is given, with the y of the same number or the
 //     last, in the photographs' own size, and puts its pixels into the document: one
@@ -25,22 +20,17 @@
   const scene = JSON.parse(element("scene").textContent);
   const canvas = element("canvas");
   const clamp = (value, [low, high]) => Math.min(Math.max(value, low), high);
-  const isStereo = (mode) => ["parallel", "crossed", "anaglyph"].includes(mode);
 
   const SMOOTHING_SECONDS = 0.06;  // hides the steps of a mouse or a tracker
   const SWAY_SECONDS = 5;          // there and back
   const SWAY_DEGREES = 20;         // of the point cloud, to each side
   const KEY_DEGREES = 5;
-  const TRACKER_HOLDS_MS = 1000;   // a mouse that lies on the desk must not fight a head tracker
-  const TILT_DEGREES = 25;         // of a phone, from the middle to the end of the range
 
   const middle = ([low, high]) => (low + high) / 2;
   const state = {
     x: middle(scene.rangeX), y: clamp(0, scene.rangeY),                // what is drawn
     targetX: middle(scene.rangeX), targetY: clamp(0, scene.rangeY),    // where it is going
-    mode: "view", eyes: 0.5,
-    held: false, swaying: false, swayStart: 0, trackedAt: -Infinity,
-    tiltOrigin: null, lastTime: 0, scheduled: false,
+    mode: "view", held: false, swaying: false, swayStart: 0, lastTime: 0, scheduled: false,
   };
   let renderer = null;
   const orbit = new Orbit(canvas, () => state.mode === "cloud", () => schedule());
@@ -120,20 +110,11 @@
     }
   }
 
-  // The largest box of that shape in the middle of a place of the canvas.
-  function fit(width, height, [x, y, roomX, roomY]) {
-    const scale = Math.min(roomX / width, roomY / height);
-    const size = [Math.round(width * scale), Math.round(height * scale)];
-    return [x + Math.floor((roomX - size[0]) / 2), y + Math.floor((roomY - size[1]) / 2), ...size];
-  }
-
-  // Columns of the left and the right eye's picture, half an eye distance from their middle. What is
-  // in the middle of the disparities lies in the plane of the screen, nearer things before it: eyes
-  // need not look crosswise at everything.
-  function stereoColumns(half) {
-    const shift = clamp(half * middle(scene.paletteRange), [-scene.width / 4, scene.width / 4]);
-    const shown = scene.width - 2 * Math.abs(shift);
-    return [[Math.abs(shift) + shift, shown], [Math.abs(shift) - shift, shown]];
+  // The largest box of the scene's shape in the middle of the canvas.
+  function fit(width, height) {
+    const scale = Math.min(width / scene.width, height / scene.height);
+    const size = [Math.round(scene.width * scale), Math.round(scene.height * scale)];
+    return [Math.floor((width - size[0]) / 2), Math.floor((height - size[1]) / 2), ...size];
   }
 
   function draw() {
@@ -144,31 +125,14 @@
       canvas.width = width;
       canvas.height = height;
     }
-    let columns = [];
-    if (isStereo(state.mode)) {
-      // Both eyes stay within the range: at its end the pair stops, rather than flattens.
-      const [low, high] = scene.rangeX;
-      const half = Math.min(state.eyes, high - low) / 2;
-      const centre = clamp(state.x, [low + half, high - half]);
-      renderer.render(centre - half, state.y, 0);
-      renderer.render(centre + half, state.y, 1);
-      columns = stereoColumns(half);
-    } else if (state.mode === "view" || state.mode === "disparity") {
+    if (state.mode === "view" || state.mode === "disparity") {
       renderer.render(state.x, state.y);
     }
     renderer.clear(width, height);
-    if (state.mode === "parallel" || state.mode === "crossed") {
-      const half = Math.floor(width / 2);
-      const sides = [[0, 0, half, height], [half, 0, half, height]]
-        .map((side) => fit(columns[0][1], scene.height, side));
-      const crossed = state.mode === "crossed";
-      renderer.show("view", sides[crossed ? 1 : 0], columns[0]);
-      renderer.show("rightView", sides[crossed ? 0 : 1], columns[1]);
-    } else if (state.mode === "cloud") {
+    if (state.mode === "cloud") {
       renderer.showCloud(orbit, width, height);
     } else {
-      const shape = [columns[0]?.[1] ?? scene.width, scene.height];
-      renderer.show(state.mode, fit(...shape, [0, 0, width, height]), ...columns);
+      renderer.show(state.mode, fit(width, height));
     }
     showPosition();
   }
@@ -178,7 +142,6 @@
       element(axis).value = state[axis];
       element(`${axis}-value`).textContent = state[axis].toFixed(3);
     }
-    element("eyes-value").textContent = state.eyes.toFixed(2);
   }
 
   // -- Moving
@@ -209,7 +172,6 @@
   function setMode(mode) {
     state.mode = mode;
     element("mode").value = mode;
-    element("eyes-group").hidden = !isStereo(mode);
     element("cloud-group").hidden = mode !== "cloud";
     canvas.classList.toggle("cloud", mode === "cloud");
     document.body.classList.toggle("in-cloud", mode === "cloud");
@@ -222,8 +184,8 @@
   }
 
   function followPointer(event) {
-    if (state.mode === "cloud" || state.swaying || (state.held && event.pointerType === "mouse")
-        || performance.now() - state.trackedAt < TRACKER_HOLDS_MS) {
+    if (state.mode === "cloud" || state.swaying
+        || (state.held && event.pointerType === "mouse")) {
       return;
     }
     const place = canvas.getBoundingClientRect();
@@ -255,10 +217,6 @@
         jumpTo(axis === "x" ? value : undefined, axis === "y" ? value : undefined);
       });
     }
-    element("eyes").addEventListener("input", () => {
-      state.eyes = Number(element("eyes").value);
-      schedule();
-    });
     element("mode").addEventListener("change", () => setMode(element("mode").value));
     element("sway").addEventListener("click", () => setSway(!state.swaying));
     element("reset").addEventListener("click", () => orbit.reset());
@@ -310,57 +268,6 @@
     });
   }
 
-  // Head trackers, see above. Numbers are all that is taken from a message, whoever sends it.
-  function listenToMessages() {
-    window.addEventListener("message", ({data}) => {
-      const [x, y] = [data?.viewX, data?.viewY];
-      if (Number.isFinite(x) || Number.isFinite(y)) {
-        state.trackedAt = performance.now();
-        setSway(false);
-        moveTo(x, y);
-      }
-    });
-  }
-
-  function followTilt(event) {
-    if (event.gamma === null || event.beta === null) {
-      return;
-    }
-    // Through a window whose right edge is turned away one looks from the left. Whichever way the
-    // screen is turned, "right" is the right of what it shows.
-    const turn = (screen.orientation?.angle ?? 0) * Math.PI / 180;
-    const right = -event.gamma * Math.cos(turn) - event.beta * Math.sin(turn);
-    const down = event.gamma * Math.sin(turn) - event.beta * Math.cos(turn);
-    state.tiltOrigin ??= {right, down};  // however the phone is held at first is the middle
-    const along = (degrees, [low, high]) =>
-      (low + high) / 2 + (high - low) / 2 * clamp(degrees / TILT_DEGREES, [-1, 1]);
-    moveTo(along(right - state.tiltOrigin.right, scene.rangeX),
-           along(down - state.tiltOrigin.down, scene.rangeY));
-  }
-
-  async function toggleTilt() {
-    const on = element("tilt").getAttribute("aria-pressed") !== "true";
-    if (on && DeviceOrientationEvent.requestPermission
-        && await DeviceOrientationEvent.requestPermission().catch(() => "denied") !== "granted") {
-      return;
-    }
-    state.tiltOrigin = null;
-    element("tilt").setAttribute("aria-pressed", on);
-    if (on) {
-      setSway(false);
-      window.addEventListener("deviceorientation", followTilt);
-    } else {
-      window.removeEventListener("deviceorientation", followTilt);
-    }
-  }
-
-  function listenToTilt() {
-    if (window.DeviceOrientationEvent && window.matchMedia("(pointer: coarse)").matches) {
-      element("tilt").hidden = false;
-      element("tilt").addEventListener("click", toggleTilt);
-    }
-  }
-
   // -- The address
 
   function addressed() {
@@ -375,7 +282,7 @@
 
   function followAddress() {
     const parameters = addressed();
-    const [x, y, eyes] = ["x", "y", "eyes"].map((name) => numbers(parameters, name)[0]);
+    const [x, y] = ["x", "y"].map((name) => numbers(parameters, name)[0]);
     if (x !== undefined || y !== undefined) {
       hold(true);
       jumpTo(x, y);
@@ -385,9 +292,6 @@
       orbit.reset();
       orbit.turn(yaw ?? 0, pitch ?? 0);
       orbit.approach(zoom > 0 ? 1 / zoom : 1);
-    }
-    if (eyes !== undefined) {
-      state.eyes = clamp(eyes, [0.05, 1]);
     }
     if ([...element("mode").options].some((option) => option.value === parameters.get("mode"))) {
       setMode(parameters.get("mode"));
@@ -430,7 +334,6 @@
       element(axis).disabled = range[0] === range[1];
     }
     element("y-group").hidden = scene.rangeY[0] === scene.rangeY[1];
-    element("eyes").value = state.eyes;
     if (!scene.cloud.calibrated) {
       element("cloud-note").textContent += "; without a calibration depths are only roughly to scale";
     }
@@ -451,8 +354,6 @@
     listenToPointer();
     listenToControls();
     listenToKeys();
-    listenToMessages();
-    listenToTilt();
     window.addEventListener("hashchange", followAddress);
     new ResizeObserver(schedule).observe(canvas);
     followAddress();

@@ -35,7 +35,7 @@ class Renderer {
     }
     this.warped = [this.makeWarpTarget(), this.makeWarpTarget()];
     this.steps = [this.makeViewTarget(), this.makeViewTarget()];
-    this.views = [this.makeViewTarget(), this.makeViewTarget()];  // of both eyes
+    this.view = this.makeViewTarget();
   }
 
   // A point of warp.vert grows by what neighbours of one surface move apart.
@@ -162,8 +162,8 @@ class Renderer {
     }
   }
 
-  // Renders the view at (x, y), in baselines from the left camera, for one eye (0 or 1).
-  render(x, y, eye = 0) {
+  // Renders the view at (x, y), in baselines from the left camera.
+  render(x, y) {
     const gl = this.gl;
     const shifts = [[x, y], [x - 1, y]];
     this.warp(this.warped[0], this.textures.leftMap, shifts[0]);
@@ -200,13 +200,12 @@ class Renderer {
     // From one target to the other and back; the last pass ends in the view.
     let from = null;
     passes.forEach(([name, values], index) => {
-      const to = index === passes.length - 1 ? this.views[eye] : this.steps[index % 2];
+      const to = index === passes.length - 1 ? this.view : this.steps[index % 2];
       this.pass(this.programs[name], to,
                 {uColour: from?.colour, uDisparity: from?.disparity, ...values});
       from = to;
     });
-    const target = this.views[eye];
-    gl.bindTexture(gl.TEXTURE_2D, target.colour);
+    gl.bindTexture(gl.TEXTURE_2D, this.view.colour);
     gl.generateMipmap(gl.TEXTURE_2D);
   }
 
@@ -257,23 +256,18 @@ class Renderer {
   }
 
   // Draws onto the canvas, into the box [x, y, width, height] from the lower left. what: "view",
-  // "rightView" (that of the second eye), "anaglyph", "disparity", "left" or "right". columns: the
-  // part [first, number of them] of the picture that is shown, and of the right eye's.
-  show(what, box, columns = [0, this.scene.width], rightColumns = columns) {
+  // "disparity", "left" or "right".
+  show(what, box) {
     const gl = this.gl;
-    const pictures = {left: this.textures.left, right: this.textures.right,
-                      rightView: this.views[1].colour};
+    const pictures = {left: this.textures.left, right: this.textures.right};
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(...box);
     this.use(this.programs.show, {
-      uPicture: pictures[what] ?? this.views[0].colour,
-      uRightPicture: this.views[1].colour,
-      uDisparity: this.views[0].disparity,
+      uPicture: pictures[what] ?? this.view.colour,
+      uDisparity: this.view.disparity,
       uPalette: this.textures.palette,
       uPaletteRange: this.scene.paletteRange,
-      uColumns: columns.map((x) => x / this.scene.width),
-      uRightColumns: rightColumns.map((x) => x / this.scene.width),
-      uKind: {anaglyph: 1, disparity: 2}[what] ?? 0,
+      uShowsDisparities: what === "disparity",
     });
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
@@ -307,7 +301,7 @@ class Renderer {
     const gl = this.gl;
     const {width, height} = this.scene;
     const rgba = new Uint8Array(4 * width * height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, this.views[0].framebuffer);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, this.view.framebuffer);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, rgba);
     const rgb = new Uint8Array(3 * width * height);
     for (let from = 0, to = 0; from < rgba.length; from += 4) {
