@@ -13,10 +13,13 @@ namespace vantage {
 namespace {
 
 /// Throws UsageError where maps cannot keep anything from the pair before.
-void require_reuse(const SearchJob& job) {
-  const std::string_view obstacle = job.request.uses_prior()       ? "a prior"
-                                    : !job.request.volumes.empty() ? "volumes"
-                                                                   : reuse_obstacle(job.options);
+void require_reuse(const SearchAbilities& abilities, const SearchJob& job) {
+  std::string_view obstacle = job.request.uses_prior()       ? "a prior"
+                              : !job.request.volumes.empty() ? "volumes"
+                                                             : reuse_obstacle(job.options);
+  if (obstacle.empty() && !abilities.reuse) {
+    obstacle = abilities.name;
+  }
   if (!obstacle.empty()) {
     throw UsageError(
         fmt::format("there are maps of the pair before with {}, expected none", obstacle));
@@ -90,7 +93,7 @@ void MatchRunner::run(const MatchCall& call, const MatchRequest& request, Dispar
   const MatchSize size = size_of(call, request.previous != nullptr);
   const SearchEntry& entry = search_of(options_, size);
   if (request.previous != nullptr) {
-    require_reuse(job);
+    require_reuse(entry.abilities, job);
   }
   require_abilities(entry.abilities, options_, request);
   clock.start("prepare");

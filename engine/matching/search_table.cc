@@ -30,8 +30,7 @@ constexpr std::array<SearchEntry, 5> kSearches = {{
                    .no_vertical_range = "disparities-y is set, expected none along epipolar lines",
                    .no_symmetric_selection =
                        "selection is symmetric, expected winner or scanline along epipolar lines: "
-                       "pixels of both photographs lie on different ones",
-                   .bands = true},
+                       "pixels of both photographs lie on different ones"},
      .serves = [](const ResolvedMatchOptions&, const MatchSize& size) { return size.along_lines; },
      .plan = EpipolarSearch::plan,
      .start = [](SearchJob& job, SearchPools&) -> std::shared_ptr<MapSearch> {
@@ -40,9 +39,7 @@ constexpr std::array<SearchEntry, 5> kSearches = {{
     {.abilities = {.name = "several images",
                    .no_symmetric_selection =
                        "selection is symmetric, expected winner or scanline with several "
-                       "baselines: a symmetric solution is of two images",
-                   .several_images = true,
-                   .bands = true},
+                       "baselines: a symmetric solution is of two images"},
      .serves = [](const ResolvedMatchOptions&,
                   const MatchSize& size) { return !size.baselines.empty(); },
      .plan = SeveralSearch::plan,
@@ -62,7 +59,7 @@ constexpr std::array<SearchEntry, 5> kSearches = {{
          [](SearchJob& job, SearchPools& pools) {
            return lending<ReducedSearch>(job, pools.reduced, pools.deferred_images);
          }},
-    {.abilities = {.name = "coarse to fine", .bands = true, .reuse = true, .coarse_checks = true},
+    {.abilities = {.name = "coarse to fine", .reuse = true, .coarse_checks = true},
      .serves = [](const ResolvedMatchOptions& options,
                   const MatchSize&) { return options.parameters.levels > 1; },
      .plan = PairSearch::plan,

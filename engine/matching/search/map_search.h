@@ -29,8 +29,6 @@ struct SearchAbilities {
   std::string_view no_symmetric_selection = {};
   std::string_view no_prior = {};
   std::string_view no_volumes = {};
-  bool several_images = false;
-  bool bands = false;          ///< costs of coarse levels of very large images, see LevelBands
   bool reuse = false;          ///< of the maps of the pair before
   bool coarse_checks = false;  ///< a map is checked against a coarse level of the other
 };
