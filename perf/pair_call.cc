@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   line.number("--calls", calls, "Calls");
   line.parse(argc, argv);
   vantage::MatchOptions options;
-  const auto& names = vantage::names_of(MatchPreset{});
+  const auto& names = vantage::names_of(vantage::MatchPreset{});
   const auto found = std::ranges::find(names, std::string_view(preset),
                                        [](const auto& entry) { return entry.first; });
   if (found == names.end()) {
