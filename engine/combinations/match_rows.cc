@@ -65,8 +65,6 @@ void add_windows(std::vector<Combination>& rows) {
       "candidate-step 1 and cost census-rays of luma");
   add(above("window-levels", 0), {is("final-iterations", 0)}, "windows need iterations",
       "final-iterations is 0, expected at least 1 with window-levels above 0");
-  add(is("iterations", 0), {above("window-levels", 1)}, "windows need iterations",
-      "iterations is 0, expected at least 1 with window-levels 2");
 }
 
 /// Components of displacements: whole pixels, each alone.
@@ -190,8 +188,7 @@ std::vector<Condition> obstacles_of_checked_levels() {
 
 std::vector<Condition> obstacles_of_reuse() {
   constexpr std::string_view kLevels = "with a method without coarse levels of Bayesian diffusion";
-  return {is("levels", 1).said(kLevels),
-          is_not("aggregate", "bayes").said(kLevels),
+  return {is("levels", 1).said(kLevels), is_not("aggregate", "bayes").said(kLevels),
           given("disparities-y").said("with disparities-y"),
           is_not("selection", "winner").said("with a selection other than winner"),
           below("candidate-step", 1).said("with candidates between pixels")};

@@ -74,9 +74,9 @@ inline constexpr std::array kOptionTexts = {
                "Number of finest levels on which --candidate-blocks limits the search, 1 to 10"},
     OptionText{
         "window-levels", "N",
-        "With bayes, several levels, prior-smoothing maximum and cost census-rays: number of "
-        "finest levels, 0 to 2, that search 8 to 16 disparities around what the coarser level "
-        "found, in place of --candidate-blocks; images of several cameras: none"},
+        "With bayes, several levels, prior-smoothing maximum and cost census-rays: 1: the "
+        "finest level searches 8 to 16 disparities around what the coarser level found, in place "
+        "of --candidate-blocks; 0, or images of several cameras: it does not"},
     OptionText{"final-iterations", "N",
                "With several levels: number of iterations on the finest one, 0 to 10000",
                "as --iterations"},

@@ -1,5 +1,5 @@
 // The finest levels of a search of whole images, in windows (EQUATIONS §3.13).
-#include "engine/matching/search/coarse_to_fine/fine_windows.h"
+#include "engine/matching/windows/window_level.h"
 
 #include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
@@ -42,15 +42,13 @@ TEST(FineWindows, NearlyEqualTheSearchOfAllOfEightCandidates) {
     all.parameters.census_thresholds = thresholds;
     all.parameters.candidate_blocks = 0;
     const DisparityMaps expected = maps_of(pair, all);
-    for (const int window_levels : {1, 2}) {
-      MatchOptions options = all;
-      options.parameters.window_levels = window_levels;
-      const DisparityMaps maps = maps_of(pair, options);
-      for (const Side side : {Side::kLeft, Side::kRight}) {
-        EXPECT_LT(share_of_differences(maps.of(side).disparity_px, expected.of(side).disparity_px),
-                  window_levels == 1 ? 0.005 : 0.02)
-            << thresholds << " thresholds, " << window_levels << " levels";
-      }
+    MatchOptions options = all;
+    options.parameters.window_levels = 1;
+    const DisparityMaps maps = maps_of(pair, options);
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+      EXPECT_LT(share_of_differences(maps.of(side).disparity_px, expected.of(side).disparity_px),
+                0.005)
+          << thresholds << " thresholds";
     }
   }
 }
@@ -59,10 +57,10 @@ TEST(FineWindows, AreIdenticalForAnyExecutionAndRequest) {
   const auto pair = textured_pair(117, 71, {-3, 40}, PixelKind::kGrey8, 4);
   DisparityMap prior_px(117, 71);
   prior_px.fill(7);
-  for (const int window_levels : {1, 2}) {
-    MatchOptions options = options_of({-3, 40}, window_levels);
+  for (const int blocks : {1, 2}) {
+    MatchOptions options = options_of({-3, 40}, 1);
     options.parameters.census_thresholds = 3;
-    options.parameters.candidate_blocks = window_levels;
+    options.parameters.candidate_blocks = blocks;
     options.parameters.pruned_levels = 3;
     for (const bool has_prior : {false, true}) {
       MatchRequest request{.confidence = true};
@@ -95,12 +93,9 @@ TEST(FineWindows, PriorPullsToItsDisparities) {
   DisparityMap prior_px(64, 48);
   prior_px.fill(11);
   const MatchRequest request{.prior = {prior_px.view(), prior_px.view(), 1}};
-  for (const int window_levels : {1, 2}) {
-    const DisparityMaps maps =
-        maps_of(pair, options_of({0, 20}, window_levels), {.threads = 2}, request);
-    EXPECT_NEAR(maps.left.disparity_px.at(40, 20), 11, 0.5) << window_levels;
-    EXPECT_NEAR(maps.right.disparity_px.at(20, 20), 11, 0.5) << window_levels;
-  }
+  const DisparityMaps maps = maps_of(pair, options_of({0, 20}, 1), {.threads = 2}, request);
+  EXPECT_NEAR(maps.left.disparity_px.at(40, 20), 11, 0.5);
+  EXPECT_NEAR(maps.right.disparity_px.at(20, 20), 11, 0.5);
 }
 
 TEST(FineWindows, PresetsDropThemWhereTheyCannotBe) {
@@ -122,7 +117,7 @@ TEST(FineWindows, PresetsDropThemWhereTheyCannotBe) {
     EXPECT_EQ(changed.resolved().window_levels, 0);
     EXPECT_NO_THROW(changed.validate());
   }
-  options.parameters.window_levels = 2;
+  options.parameters.window_levels = 1;
   options.parameters.colour = ColourUse::kChannels;
   EXPECT_THROW(options.validate(), UsageError);
   options.parameters.colour.reset();

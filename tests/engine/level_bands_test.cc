@@ -66,7 +66,7 @@ TEST(LevelBands, MapsAreTheSame) {
       method(MatchMethod::kBayes, {.cost = MatchCost::kRayCensus,
                                    .candidate_blocks = 1,
                                    .pruned_levels = 3,
-                                   .window_levels = 2,
+                                   .window_levels = 1,
                                    .prior_smoothing = PriorSmoothing::kMaximum}),
       method(MatchMethod::kMembrane, {.edge_weight = 0.3}),
       method(MatchMethod::kSsd, {.window_px = 7})};

@@ -272,7 +272,7 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
             "a number above 0", MatchMethod::kSsd, both_images),
       bound("levels", &P::levels, {1, 10}, {-1, 0, 11}, "from 1 to 10"),
       bound("candidate-blocks", &P::candidate_blocks, {0}, {-1, 9}, "(all candidates) to 8"),
-      bound("window-levels", &P::window_levels, {0}, {-1, 3}, "from 0 to 2"),
+      bound("window-levels", &P::window_levels, {0}, {-1, 2}, "0 or 1"),
       bound("census-thresholds", &P::census_thresholds, {1, 3}, {-1, 0, 2, 4}, "1 or 3",
             MatchMethod::kSsd, costs_by<MatchCost::kRayCensus>),
       bound("pruned-levels", &P::pruned_levels, {1, 10}, {-1, 0, 11}, "from 1 to 10",

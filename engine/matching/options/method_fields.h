@@ -79,7 +79,7 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
               {is_within<0, kMaxCandidateBlocks>, "a number from 0 (all candidates) to 8"}},
         options.candidate_blocks...);
   visit(Field{"pruned-levels", readers::kPrunedLevels, kLevels}, options.pruned_levels...);
-  visit(Field{"window-levels", readers::kWindowLevels, {is_within<0, 2>, "a number from 0 to 2"}},
+  visit(Field{"window-levels", readers::kWindowLevels, {is_within<0, 1>, "0 or 1"}},
         options.window_levels...);
   visit(Field{"final-iterations", readers::kNamedWithLevels, kIterations},
         options.final_iterations...);

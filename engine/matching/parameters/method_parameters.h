@@ -124,9 +124,8 @@ struct MethodParametersOf {
   Field<int> candidate_blocks = by_default<Field>(0);
   /// Number of pruned levels, 1..10; the coarsest level always searches all candidates.
   Field<int> pruned_levels = by_default<Field>(2);
-  /// Bayes with levels: number of finest levels that search windows of candidates around the
-  /// winners of the next coarser level, 0..2. The prior's maximum, cost kRayCensus on luma. Not
-  /// with several partners.
+  /// Bayes with levels: 1: the finest level searches windows of candidates around the winners of
+  /// the next coarser one. The prior's maximum, cost kRayCensus on luma. Not with several partners.
   Field<int> window_levels = by_default<Field>(0);
   /// Iterations at the finest of several levels: 0..10000. Default: `iterations`.
   Field<int> final_iterations = by_default<Field>(10);

@@ -10,8 +10,8 @@
 #include "engine/image/image.h"
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/level_volume.h"
-#include "engine/matching/search/coarse_to_fine/fine_windows.h"
 #include "engine/matching/search/coarse_to_fine/level_plan.h"
+#include "engine/matching/windows/coarse_beliefs.h"
 #include "kernels/candidates.h"
 #include "scheduler/range.h"
 
@@ -57,7 +57,8 @@ class CoarseLevels {
                      CandidateBlocks::SmoothTiles smooth, Execution& execution);
   /// Winners of the level that was computed last.
   [[nodiscard]] const Image<std::int32_t>& coarser_winners() const { return *coarser_winners_; }
-  [[nodiscard]] FineWindowsWork& windows() { return windows_; }
+  /// Of the image, for volumes: the windows that hold the winners.
+  [[nodiscard]] WindowState& windows() { return windows_; }
   /// Image for the winners of `level` ≥ 1, resized to the level. `kept`: an image that outlives the
   /// levels; null: working memory.
   Image<std::int32_t>& start_winners(int level, Image<std::int32_t>* kept);
@@ -73,7 +74,7 @@ class CoarseLevels {
   std::vector<CandidateBlocks> blocks_;             ///< of pruned levels
   std::vector<Image<std::int32_t>> winners_;        ///< of levels from 1 on, unless kept elsewhere
   Image<std::int32_t>* coarser_winners_ = nullptr;  ///< of the previous level
-  FineWindowsWork windows_;
+  WindowState windows_;
 };
 
 }  // namespace vantage

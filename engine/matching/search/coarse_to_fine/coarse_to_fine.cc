@@ -4,11 +4,11 @@
 #include <array>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "engine/matching/levels/energy_format.h"
 #include "engine/matching/levels/smooth_tiles.h"
 #include "engine/matching/search/coarse_to_fine/window_volume.h"
+#include "engine/matching/windows/window_level.h"
 #include "scheduler/trace.h"
 
 namespace vantage {
@@ -72,17 +72,15 @@ LevelCells CoarseToFine::search(const std::vector<VolumeWriter>& volumes) {
   }
   write_costs(volumes);
   const int finest = wanted_.coarse.is_only ? wanted_.coarse.level : 0;
-  for (int level = plan.coarsest(); level >= std::max(finest, plan.window_levels); --level) {
+  for (int level = plan.coarsest(); level >= std::max(finest, plan.has_windows ? 1 : 0); --level) {
     search_level(level, find_writer(volumes, VolumeKind::kAggregated, level));
   }
-  if (finest < plan.window_levels) {
-    search_fine_levels(volumes);
+  if (finest == 0 && plan.has_windows) {
+    search_windows_of_image(find_writer(volumes, VolumeKind::kAggregated, 0));
   }
   if (has_check_map()) {
-    const bool has_windows = plan.window_levels > 0;
-    make_check_map(
-        has_windows ? smooth_ : levels_.blocks(0)->smooth(),
-        std::as_const(has_windows ? *level_1_winners_ : levels_.coarser_winners()).view());
+    make_check_map(plan.has_windows ? smooth_ : levels_.blocks(0)->smooth(),
+                   levels_.coarser_winners().view());
   }
   return cells_;
 }
@@ -151,58 +149,47 @@ void CoarseToFine::search_level(int level, const VolumeWriter* volume) {
                                                 : share_of(of_level, plan.extent(level))));
 }
 
-/// The levels that are searched in windows.
-void CoarseToFine::search_fine_levels(const std::vector<VolumeWriter>& volumes) {
-  const int from = levels_.plan().window_levels;
-  const EnergyFormat format(image_.parameters);
-  level_1_winners_ = &levels_.coarser_winners();
-  const LevelBeliefs coarse(levels_.result(from), levels_.blocks(from), level_1_winners_->view(),
-                            image_.geometry, format.of_result().nats(format.steps_per_nat()));
-  FineWindows windows(image_.parameters, image_.geometry, image_.input, execution_,
-                      levels_.windows());
-  if (from == 2) {
-    search_level_1(windows, coarse, find_writer(volumes, VolumeKind::kAggregated, 1));
-  }
-  if (!wanted_.coarse.is_only) {
-    search_level_0(windows, from == 1 ? &coarse : nullptr,
-                   find_writer(volumes, VolumeKind::kAggregated, 0));
-  }
-}
-
-void CoarseToFine::search_level_1(FineWindows& windows, const CoarseBeliefs& coarse,
-                                  const VolumeWriter* volume) {
-  const scheduler::Span span(kLevelNames[1]);
-  const scheduler::Extent extent = levels_.plan().extent(1);
-  Image<std::int32_t>& winners =
-      wanted_.coarse.level == 1 ? *wanted_.coarse.winners : levels_.windows().winners;
-  const auto* const parts = wanted_.parts != nullptr ? wanted_.parts->of(1) : nullptr;
-  windows.search_level_1(coarse, extent, parts != nullptr ? &parts->winners : nullptr, winners);
-  level_1_winners_ = &winners;
-  if (volume != nullptr) {
-    write_window_volume(levels_.windows().state, image_.geometry.count, *volume, execution_);
-  }
-  count(share_of(parts, extent) * pixels_of(extent) * kernels::kWindowCandidates);
-}
-
-void CoarseToFine::search_level_0(FineWindows& windows, const CoarseBeliefs* coarse,
-                                  const VolumeWriter* volume) {
+/// Level 0, in windows around the winners of level 1.
+void CoarseToFine::search_windows_of_image(const VolumeWriter* volume) {
   const scheduler::Span span(kLevelNames[0]);
   const scheduler::Extent extent = levels_.plan().extent(0);
+  const ChainInput& input = image_.input;
+  const EnergyFormat format(image_.parameters);
+  const LevelBeliefs coarse(levels_.result(1), levels_.blocks(1), levels_.coarser_winners().view(),
+                            image_.geometry, format.of_result().nats(format.steps_per_nat()));
   std::optional<TileMask> tiles;
   if (wanted_.parts != nullptr) {
     tiles = wanted_.parts->map;
   }
   if (has_check_map()) {
-    smooth_ =
-        smooth_tiles(level_1_winners_->view(), extent, image_.geometry.steps_per_px, execution_);
+    smooth_ = smooth_tiles(levels_.coarser_winners().view(), extent, image_.geometry.steps_per_px,
+                           execution_);
     if (wanted_.check.is_only) {
       tiles = tiles ? smooth_.inverse().within(*tiles) : smooth_.inverse();
     }
   }
-  WindowState* const state = volume != nullptr ? &levels_.windows().finest : nullptr;
-  windows.search_level_0(coarse, wanted_.outputs, tiles ? &*tiles : nullptr, state);
+  std::vector<scheduler::Region> regions;
+  if (tiles) {
+    regions = tiles->regions();
+  }
+  search_windows({.parameters = at_level(image_.parameters, 0),
+                  .side = 1,
+                  .spacing = 1,  // all levels have the image's candidates
+                  .geometry = image_.geometry,
+                  .reference = *input.reference,
+                  .partner = *input.partners.front().image,
+                  .edges = input.edges.empty() ? nullptr : &input.edges.front(),
+                  .coarse = coarse,
+                  .prior_px = input.prior_px,
+                  .prior_weight = input.prior_weight},
+                 image_.parameters.subpixel,
+                 {.disparity_px = wanted_.outputs.disparity_px,
+                  .confidence = wanted_.outputs.confidence,
+                  .state = volume != nullptr ? &levels_.windows() : nullptr,
+                  .regions = tiles ? &regions : nullptr},
+                 execution_);
   if (volume != nullptr) {
-    write_window_volume(*state, image_.geometry.count, *volume, execution_);
+    write_window_volume(levels_.windows(), image_.geometry.count, *volume, execution_);
   }
   count((tiles ? tiles->share() : 1) * pixels_of(extent) * kernels::kWindowCandidates);
 }

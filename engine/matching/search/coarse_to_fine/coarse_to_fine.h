@@ -63,8 +63,8 @@ struct WantedWinners {
 ///
 /// With parameters.candidate_blocks > 0 the finest `pruned_levels` levels (never the coarsest)
 /// process only a few candidate blocks per tile (CandidateBlocks), near the winners of the next
-/// coarser level. Costs are still reduced from all candidates. The finest `window_levels` levels
-/// (never the coarsest) are searched in windows instead.
+/// coarser level. Costs are still reduced from all candidates. With parameters.window_levels the
+/// finest one of several is searched in windows instead (§3.13).
 ///
 /// `volumes` take the cells of their levels; costs of a level are computed once more for them.
 class CoarseToFine {
@@ -88,11 +88,7 @@ class CoarseToFine {
   void write_costs(const std::vector<VolumeWriter>& volumes);
   [[nodiscard]] ChainLevel place_of(int level);
   void search_level(int level, const VolumeWriter* volume);
-  void search_fine_levels(const std::vector<VolumeWriter>& volumes);
-  void search_level_1(FineWindows& windows, const CoarseBeliefs& coarse,
-                      const VolumeWriter* volume);
-  void search_level_0(FineWindows& windows, const CoarseBeliefs* coarse,
-                      const VolumeWriter* volume);
+  void search_windows_of_image(const VolumeWriter* volume);
   void make_check_map(const TileMask& smooth, ImageView<const std::int32_t> winners);
   void count(double finest_cells);
 
@@ -103,9 +99,7 @@ class CoarseToFine {
   const RunChain& run_;
   LevelCosts costs_;
   LevelCells cells_;
-  // What a check map is made from, if levels are searched in windows.
-  TileMask smooth_;  ///< of the image
-  const Image<std::int32_t>* level_1_winners_ = nullptr;
+  TileMask smooth_;  ///< of the image, for a check map if it is searched in windows
 };
 
 }  // namespace vantage

@@ -6,7 +6,6 @@
 #include "engine/matching/aggregation/aggregation_table.h"
 #include "engine/matching/chain/match_chain.h"
 #include "engine/matching/levels/level_extents.h"
-#include "kernels/candidate_windows.h"
 
 namespace vantage {
 
@@ -19,13 +18,13 @@ LevelPlan level_plan(const MethodParameters& parameters, scheduler::Extent image
                  .iterations = parameters.iterations,
                  .candidate_blocks = parameters.candidate_blocks,
                  .may_share_costs = can_share_costs(parameters, image, candidates)};
-  plan.window_levels = std::min(parameters.window_levels, plan.coarsest());
+  plan.has_windows = parameters.window_levels > 0 && plan.coarsest() > 0;
   const int pruned = std::min(parameters.pruned_levels, plan.coarsest());
-  if (parameters.candidate_blocks > 0 && pruned > plan.window_levels) {
+  if (parameters.candidate_blocks > 0 && pruned > (plan.has_windows ? 1 : 0)) {
     plan.pruned_levels = pruned;
   }
   plan.has_check_map =
-      plan.window_levels > 0 || (plan.pruned_levels > 0 && at_level(parameters, 0).iterations <= 1);
+      plan.has_windows || (plan.pruned_levels > 0 && at_level(parameters, 0).iterations <= 1);
   plan.bands = level_bands(plan.extents, plan.lanes(), plan.cell_bytes, memory_bytes);
   return plan;
 }
@@ -50,19 +49,13 @@ std::size_t LevelPlan::bytes() const {
   for (int level = 1; level <= coarsest(); ++level) {
     const std::size_t of_costs = bytes_of(level, held_cost_rows(level), lanes());
     bytes += level == 1 && may_share_costs ? 2 * of_costs : of_costs;
-    if (level >= window_levels) {
-      std::size_t& result = results[static_cast<std::size_t>(level) % 2];
-      result = std::max(result, bytes_of(level, extent(level).rows, result_lanes(level)));
-    }
+    std::size_t& result = results[static_cast<std::size_t>(level) % 2];
+    result = std::max(result, bytes_of(level, extent(level).rows, result_lanes(level)));
   }
   bytes += results[0] + results[1];
-  if (window_levels > 0 || pruned_levels > 0) {
-    // Winners of level 1; with two levels of windows also its state.
-    constexpr std::size_t kState =
-        sizeof(kernels::WindowCells) + 2 * sizeof(std::int16_t) + sizeof(float);
+  if (has_windows || pruned_levels > 0) {  // winners of level 1
     bytes += static_cast<std::size_t>(extent(1).columns) *
-             static_cast<std::size_t>(extent(1).rows) *
-             (sizeof(std::int32_t) + (window_levels > 1 ? kState : 0));
+             static_cast<std::size_t>(extent(1).rows) * sizeof(std::int32_t);
   }
   return bytes;
 }

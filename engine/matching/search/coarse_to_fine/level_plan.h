@@ -17,12 +17,12 @@ namespace vantage {
 struct LevelPlan {
   std::vector<scheduler::Extent> extents;  ///< of the levels, the image's own first
   int candidates = 1;
-  int steps_per_px = 1;  ///< candidates per pixel of disparity
-  int cell_bytes = 1;    ///< of a stored cell
-  int iterations = 0;    ///< of coarse levels
-  /// How many of the finest levels are searched in windows, and how many have candidate blocks, and
-  /// how many of those per tile. Neither includes the coarsest level.
-  int window_levels = 0;
+  int steps_per_px = 1;      ///< candidates per pixel of disparity
+  int cell_bytes = 1;        ///< of a stored cell
+  int iterations = 0;        ///< of coarse levels
+  bool has_windows = false;  ///< the finest level is searched in windows; not the only one
+  /// How many of the finest levels have candidate blocks, never the coarsest, and how many per
+  /// tile.
   int pruned_levels = 0;
   int candidate_blocks = 0;
   /// The finest level can do without its smooth_tiles(): it is searched in windows, or pruned with
@@ -47,7 +47,7 @@ struct LevelPlan {
   [[nodiscard]] int held_cost_rows(int level) const;
   /// Whether the next finer level chooses its candidates from the winners of `level`.
   [[nodiscard]] bool needs_winners(int level) const {
-    return level > 0 && (level <= pruned_levels || level == window_levels);
+    return level > 0 && (level <= pruned_levels || (level == 1 && has_windows));
   }
   /// All that CoarseLevels holds but for lists of blocks.
   [[nodiscard]] std::size_t bytes() const;

@@ -94,7 +94,7 @@ void LevelSearch::search(const SearchedImage& image, const WantedWinners& wanted
     return;
   }
   // Windows have no chain. Costs of parts have no plan.
-  if (levels_.plan().window_levels > 0 && !plan_of_costs.passes.empty()) {
+  if (levels_.plan().has_windows && !plan_of_costs.passes.empty()) {
     report_.plan = std::move(plan_of_costs);
   }
   report_.finest_cells += cells.finest_level;
@@ -117,7 +117,7 @@ std::vector<scheduler::ChainPlan> LevelSearch::plans(
   LevelVolume right_costs;   // likewise
   CandidateBlocks blocks;
   ChainLevel place;
-  if (plan.window_levels > 0) {
+  if (plan.has_windows) {
     place.reduced = &costs;
     place.reduced_right =
         shares_costs(parameters_, searched, image, geometry.count) ? &right_costs : nullptr;
