@@ -11,12 +11,33 @@
 namespace vantage {
 namespace {
 
-/// Rows: R, G and B of the anaglyph; columns: R, G, B of the left, then of the right image. As
-/// computed by Dubois for the primaries of a screen and the filters of common glasses.
-constexpr std::array<std::array<float, 6>, 3> kAnaglyph = {
-    {{0.456100F, 0.500484F, 0.176381F, -0.0434706F, -0.0879388F, -0.00155529F},
-     {-0.0400822F, -0.0378246F, -0.0157589F, 0.378476F, 0.733640F, -0.0184503F},
-     {-0.0152161F, -0.0205971F, -0.00546856F, -0.0721527F, -0.112961F, 1.22640F}}};
+/// Rows: R, G and B of the anaglyph; columns: R, G, B of the left, then of the right image.
+using AnaglyphMatrix = std::array<std::array<float, 6>, 3>;
+
+// As computed by Dubois for the primaries of a screen and the filters of common glasses.
+const AnaglyphMatrix& matrix_of(Anaglyph anaglyph) {
+  static constexpr AnaglyphMatrix kRedCyan = {
+      {{0.456100F, 0.500484F, 0.176381F, -0.0434706F, -0.0879388F, -0.00155529F},
+       {-0.0400822F, -0.0378246F, -0.0157589F, 0.378476F, 0.733640F, -0.0184503F},
+       {-0.0152161F, -0.0205971F, -0.00546856F, -0.0721527F, -0.112961F, 1.22640F}}};
+  static constexpr AnaglyphMatrix kGreenMagenta = {
+      {{-0.062F, -0.158F, -0.039F, 0.529F, 0.705F, 0.024F},
+       {0.284F, 0.668F, 0.143F, -0.016F, -0.015F, -0.065F},
+       {-0.015F, -0.027F, 0.021F, 0.009F, 0.075F, 0.937F}}};
+  static constexpr AnaglyphMatrix kYellowBlue = {
+      {{1.062F, -0.205F, 0.299F, -0.016F, -0.123F, -0.017F},
+       {-0.026F, 0.908F, 0.068F, 0.006F, 0.062F, -0.017F},
+       {-0.038F, -0.173F, 0.022F, 0.094F, 0.185F, 0.911F}}};
+  switch (anaglyph) {
+    case Anaglyph::kRedCyan:
+      return kRedCyan;
+    case Anaglyph::kGreenMagenta:
+      return kGreenMagenta;
+    case Anaglyph::kYellowBlue:
+      break;
+  }
+  return kYellowBlue;
+}
 
 template <typename T>
 T to_value(float value) {
@@ -29,7 +50,8 @@ T to_value(float value) {
 }
 
 template <typename T>
-void make_anaglyph(const Image<T>& left, const Image<T>& right, Image<T>& shown) {
+void make_anaglyph(const Image<T>& left, const Image<T>& right, const AnaglyphMatrix& matrix,
+                   Image<T>& shown) {
   const int channels = left.channels();
   const bool is_grey = channels == 1;
   shown.resize(left.width(), left.height(), is_grey ? 3 : channels);
@@ -44,7 +66,7 @@ void make_anaglyph(const Image<T>& left, const Image<T>& right, Image<T>& shown)
       for (int c = 0; c < 3; ++c) {
         float sum = 0;
         for (std::size_t i = 0; i < values.size(); ++i) {
-          sum += kAnaglyph[static_cast<std::size_t>(c)][i] * values[i];
+          sum += matrix[static_cast<std::size_t>(c)][i] * values[i];
         }
         shown.at(x, y, c) = to_value<T>(sum);
       }
@@ -62,11 +84,19 @@ void interleave(const Image<T>& left, const Image<T>& right, InterleavedStereo o
   const Image<T>& first = order.right_first ? right : left;
   const Image<T>& second = order.right_first ? left : right;
   const int channels = left.channels();
-  const auto values = static_cast<std::size_t>(left.width() * channels);
-  shown.resize(left.width(), 2 * left.height(), channels);
+  shown.resize(left.width() * (order.columns ? 2 : 1), left.height() * (order.columns ? 1 : 2),
+               channels);
   for (int y = 0; y < left.height(); ++y) {
-    std::copy_n(first.row(y), values, shown.row(2 * y));
-    std::copy_n(second.row(y), values, shown.row(2 * y + 1));
+    if (!order.columns) {
+      const auto values = static_cast<std::size_t>(left.width() * channels);
+      std::copy_n(first.row(y), values, shown.row(2 * y));
+      std::copy_n(second.row(y), values, shown.row(2 * y + 1));
+      continue;
+    }
+    for (int x = 0; x < left.width(); ++x) {
+      std::copy_n(first.row(y) + x * channels, channels, shown.row(y) + 2 * x * channels);
+      std::copy_n(second.row(y) + x * channels, channels, shown.row(y) + (2 * x + 1) * channels);
+    }
   }
 }
 
@@ -78,9 +108,13 @@ const std::vector<std::pair<std::string_view, StereoDisplay>>& stereo_display_na
     for (const auto& [name, packing] : stereo_packing_names()) {
       names.emplace_back(name, packing);
     }
-    names.emplace_back("arcd", Anaglyph{});
+    names.emplace_back("arcd", Anaglyph::kRedCyan);
+    names.emplace_back("agmd", Anaglyph::kGreenMagenta);
+    names.emplace_back("aybd", Anaglyph::kYellowBlue);
     names.emplace_back("irl", InterleavedStereo{});
     names.emplace_back("irr", InterleavedStereo{.right_first = true});
+    names.emplace_back("icl", InterleavedStereo{.columns = true});
+    names.emplace_back("icr", InterleavedStereo{.columns = true, .right_first = true});
     return names;
   }();
   return kNames;
@@ -100,7 +134,7 @@ void show_stereo(const Photograph& left, const Photograph& right, const StereoDi
         if (const auto* order = std::get_if<InterleavedStereo>(&display)) {
           interleave(left_image, right_image, *order, result);
         } else {
-          make_anaglyph(left_image, right_image, result);
+          make_anaglyph(left_image, right_image, matrix_of(std::get<Anaglyph>(display)), result);
         }
       },
       left.pixels);

@@ -10,13 +10,12 @@
 
 namespace vantage {
 
-/// One picture for glasses with red and cyan filters, red before the left eye.
-struct Anaglyph {
-  friend bool operator==(const Anaglyph&, const Anaglyph&) = default;
-};
+/// One picture for two-colour filter glasses, left first.
+enum class Anaglyph { kRedCyan, kGreenMagenta, kYellowBlue };
 
-/// Alternating rows of both images, all of them: twice as high as one image.
+/// Alternating rows (or columns) of both images, all of them: twice as high (wide) as one image.
 struct InterleavedStereo {
+  bool columns = false;
   bool right_first = false;
 
   friend bool operator==(const InterleavedStereo&, const InterleavedStereo&) = default;
@@ -25,8 +24,8 @@ struct InterleavedStereo {
 /// How a viewer's single picture is made from both images of a pair.
 using StereoDisplay = std::variant<StereoPacking, Anaglyph, InterleavedStereo>;
 
-/// Names as in ffmpeg's stereo3d filter: those of stereo_packing_names(); arcd
-/// (Dubois' anaglyph); irl and irr (interleaved).
+/// Names as in ffmpeg's stereo3d filter: those of stereo_packing_names(); arcd, agmd and aybd
+/// (Dubois anaglyphs); irl, irr, icl and icr (interleaved).
 const std::vector<std::pair<std::string_view, StereoDisplay>>& stereo_display_names();
 
 /// Combines both images (equal size, depth and channels) into one. Anaglyphs weigh the channels of

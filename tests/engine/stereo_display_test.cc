@@ -22,19 +22,22 @@ class StereoDisplayTest : public testing::Test {};
 using Depths = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(StereoDisplayTest, Depths);
 
-TYPED_TEST(StereoDisplayTest, RowsTakeTurns) {
+TYPED_TEST(StereoDisplayTest, RowsAndColumnsTakeTurns) {
   for (const int channels : {1, 3, 4}) {
     const Photograph left = noise<TypeParam>(13, 7, channels, 1);
     const Photograph right = noise<TypeParam>(13, 7, channels, 2);
-    for (const char* name : {"irl", "irr"}) {
+    for (const char* name : {"irl", "irr", "icl", "icr"}) {
+      const bool columns = name[1] == 'c';
       Photograph shown;
       show_stereo(left, right, display_of(name), shown);
-      ASSERT_EQ(shown.width(), 13);
-      ASSERT_EQ(shown.height(), 14);
+      ASSERT_EQ(shown.width(), columns ? 26 : 13);
+      ASSERT_EQ(shown.height(), columns ? 7 : 14);
       for (const auto [x, y] : positions_of(shown)) {
-        const Photograph& source = (y % 2 == 0) == (name[2] == 'l') ? left : right;
+        const bool is_first = (columns ? x : y) % 2 == 0;
+        const Photograph& source = is_first == (name[2] == 'l') ? left : right;
         for (int c = 0; c < channels; ++c) {
-          ASSERT_EQ(value(shown, x, y, c), value(source, x, y / 2, c))
+          ASSERT_EQ(value(shown, x, y, c),
+                    value(source, columns ? x / 2 : x, columns ? y : y / 2, c))
               << name << ' ' << x << ' ' << y;
         }
       }
@@ -54,7 +57,7 @@ TYPED_TEST(StereoDisplayTest, PackingsAreThoseOfPackStereo) {
   }
 }
 
-TYPED_TEST(StereoDisplayTest, TheAnaglyphOfOneGreyPictureStaysAboutGrey) {
+TYPED_TEST(StereoDisplayTest, AnaglyphsOfOneGreyPictureStayAboutGrey) {
   // Through either filter a grey pixel looks as it is: rows sum to about 1 over both images.
   constexpr double kLargest = std::is_same_v<TypeParam, float>           ? 1
                               : std::is_same_v<TypeParam, std::uint16_t> ? 65535
@@ -63,16 +66,18 @@ TYPED_TEST(StereoDisplayTest, TheAnaglyphOfOneGreyPictureStaysAboutGrey) {
   grey.fill(static_cast<TypeParam>(kLargest / 2));
   const Photograph left{grey.copy()};
   const Photograph right{grey.copy()};
-  Photograph shown;
-  show_stereo(left, right, display_of("arcd"), shown);
-  ASSERT_EQ(shown.channels(), 3);
-  for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(value(shown, 2, 1, c), kLargest / 2, 0.005 * kLargest) << c;
+  for (const char* name : {"arcd", "agmd", "aybd"}) {
+    Photograph shown;
+    show_stereo(left, right, display_of(name), shown);
+    ASSERT_EQ(shown.channels(), 3);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(value(shown, 2, 1, c), kLargest / 2, 0.005 * kLargest) << name << ' ' << c;
+    }
   }
 }
 
-// Values of ffmpeg 5.1, stereo3d=sbsl:arcd, for 8-bit RGB; it truncates 16-bit fractions.
-TEST(StereoDisplay, TheAnaglyphIsThatOfDubois) {
+// Values of ffmpeg 5.1, stereo3d=sbsl:NAME, for 8-bit RGB; it truncates 16-bit fractions.
+TEST(StereoDisplay, AnaglyphsAreThoseOfDubois) {
   Image<std::uint8_t> left(1, 1, 3);
   Image<std::uint8_t> right(1, 1, 3);
   left.at(0, 0, 0) = 200;
@@ -81,11 +86,16 @@ TEST(StereoDisplay, TheAnaglyphIsThatOfDubois) {
   right.at(0, 0, 0) = 30;
   right.at(0, 0, 1) = 90;
   right.at(0, 0, 2) = 180;
-  const int expected[] = {148, 60, 202};
-  Photograph shown;
-  show_stereo({std::move(left)}, {std::move(right)}, display_of("arcd"), shown);
-  for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(value(shown, 0, 0, c), expected[c], 1) << c;
+  const struct {
+    const char* name;
+    int rgb[3];
+  } expected[] = {{"arcd", {148, 60, 202}}, {"agmd", {50, 129, 170}}, {"aybd", {185, 109, 155}}};
+  for (const auto& [name, rgb] : expected) {
+    Photograph shown;
+    show_stereo({left.copy()}, {right.copy()}, display_of(name), shown);
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_NEAR(value(shown, 0, 0, c), rgb[c], 1) << name << ' ' << c;
+    }
   }
 }
 
