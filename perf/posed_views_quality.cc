@@ -20,6 +20,7 @@
 #include "engine/generation/layered_scene.h"
 #include "engine/synthesis/three_step_synthesizer.h"
 #include "engine/synthesis/view_synthesizer.h"
+#include "tests/engine/warped_photograph.h"
 
 namespace vantage::perf {
 namespace {
@@ -104,7 +105,8 @@ class PosedViews {
       const PosedCamera camera = camera_at(place);
       const Eigen::Matrix3d homography =
           camera.matrix * camera.rotation * pair_.left.matrix.inverse();
-      const Photograph truth = resampled(homography, place.zoom < 1);
+      const Photograph truth =
+          test::warped(left_.image, homography, place.zoom < 1 ? 8 : 1, cv::BORDER_REPLICATE);
       const Photograph rendered = scene_.render(camera, 0).image;
       const Mask mask = inside(homography, place.zoom);
       const auto [one_pass, three_steps] = views_of(camera);
@@ -169,29 +171,6 @@ class PosedViews {
                                    : evaluate_view(view.image, truth, execution_,
                                                    ImageView<const std::uint8_t>(mask.view()))
                                          .psnr_db;
-  }
-
-  /// The left photograph resampled by OpenCV; area means where it is reduced.
-  [[nodiscard]] Photograph resampled(const Eigen::Matrix3d& homography, bool reduces) const {
-    const auto& from = std::get<Image<std::uint8_t>>(left_.image.pixels);
-    const cv::Mat source(kHeight, kWidth, CV_8UC3, const_cast<std::uint8_t*>(from.row(0)),
-                         from.view().stride());
-    const int samples = reduces ? 8 : 1;
-    Eigen::Matrix3d finer = Eigen::Matrix3d::Identity();
-    finer(0, 0) = finer(1, 1) = samples;
-    finer(0, 2) = finer(1, 2) = 0.5 * (samples - 1);
-    const Eigen::Matrix3d to_samples = finer * homography;
-    cv::Mat matrix(3, 3, CV_64F);
-    for (int i = 0; i < 9; ++i) {
-      matrix.at<double>(i / 3, i % 3) = to_samples(i / 3, i % 3);
-    }
-    cv::Mat sampled;
-    cv::warpPerspective(source, sampled, matrix, {samples * kWidth, samples * kHeight},
-                        cv::INTER_CUBIC, cv::BORDER_REPLICATE);
-    Image<std::uint8_t> result(kWidth, kHeight, 3);
-    cv::Mat target(kHeight, kWidth, CV_8UC3, result.row(0), result.view().stride());
-    cv::resize(sampled, target, target.size(), 0, 0, cv::INTER_AREA);
-    return {std::move(result)};
   }
 
   /// Mask of the view's pixels that lie inside the photograph.

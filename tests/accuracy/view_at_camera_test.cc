@@ -51,31 +51,6 @@ PosedCamera posed(const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& rotation
   return camera;
 }
 
-/// What `homography` (pixel of the result ← pixel of the image) makes of an 8-bit RGB image: means
-/// over areas, of 6 × 6 samples, where it is reduced.
-Photograph resampled(const Photograph& photograph, const Eigen::Matrix3d& homography,
-                     bool reduces) {
-  const auto& from = std::get<Image<std::uint8_t>>(photograph.pixels);
-  const cv::Mat source(from.height(), from.width(), CV_8UC3, const_cast<std::uint8_t*>(from.row(0)),
-                       from.view().stride());
-  const int samples = reduces ? 6 : 1;
-  Eigen::Matrix3d finer = Eigen::Matrix3d::Identity();
-  finer(0, 0) = finer(1, 1) = samples;
-  finer(0, 2) = finer(1, 2) = 0.5 * (samples - 1);
-  const Eigen::Matrix3d to_samples = finer * homography;
-  cv::Mat matrix(3, 3, CV_64F);
-  for (int i = 0; i < 9; ++i) {
-    matrix.at<double>(i / 3, i % 3) = to_samples(i / 3, i % 3);
-  }
-  cv::Mat sampled;
-  cv::warpPerspective(source, sampled, matrix, {samples * kWidth, samples * kHeight},
-                      cv::INTER_CUBIC, cv::BORDER_REPLICATE);
-  Image<std::uint8_t> result(kWidth, kHeight, 3);
-  cv::Mat target(kHeight, kWidth, CV_8UC3, result.row(0), result.view().stride());
-  cv::resize(sampled, target, target.size(), 0, 0, cv::INTER_AREA);
-  return {std::move(result)};
-}
-
 /// Pixels of a view that lie inside an image, two of its pixels from the border.
 Mask inside(const Eigen::Matrix3d& homography) {
   const Eigen::Matrix3d back = homography.inverse();
@@ -127,7 +102,8 @@ TEST_F(ViewAtCamera, IsThePhotographResampledAndNoWorseThanThreeSteps) {
     const PosedCamera camera = posed(pair.left.matrix, Eigen::Matrix3d::Identity(),
                                      {static_cast<double>(side), 0, 0}, turn);
     const Eigen::Matrix3d homography = camera.matrix * camera.rotation * pair.left.matrix.inverse();
-    const Photograph truth = resampled(images[side].image, homography, turn.zoom < 1);
+    const Photograph truth =
+        warped(images[side].image, homography, turn.zoom < 1 ? 6 : 1, cv::BORDER_REPLICATE);
     const Mask mask = inside(homography);
     SynthesizedView view;
     SynthesizedView three_steps;
@@ -206,7 +182,9 @@ TEST_F(ViewAtCamera, OfAnOriginalIsTheOriginal) {
       // Inside the original, also where the rectified image, to which the map belongs, ends before.
       const Eigen::Matrix3d homography = camera.matrix * turn.rotation() * matrix.inverse();
       const Mask mask = inside(homography);
-      EXPECT_GE(psnr(view.image, resampled(original, homography, turn.zoom < 1), mask, execution_),
+      EXPECT_GE(psnr(view.image,
+                     warped(original, homography, turn.zoom < 1 ? 6 : 1, cv::BORDER_REPLICATE),
+                     mask, execution_),
                 turn.zoom == 1 ? 90 : 47)
           << turn.text();
     }

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <opencv2/imgproc.hpp>
 
 #include "engine/generation/layered_scene.h"
 #include "tests/engine/calibration_cases.h"
 #include "tests/engine/engine_test.h"
+#include "tests/engine/warped_photograph.h"
 
 namespace vantage::inline test {
 
@@ -14,23 +14,6 @@ inline Eigen::Matrix3d turned_by(double x, double y, double z) {
           Eigen::AngleAxisd(y, Eigen::Vector3d::UnitY()) *
           Eigen::AngleAxisd(z, Eigen::Vector3d::UnitZ()))
       .toRotationMatrix();
-}
-
-/// What `homography` (pixel of the result ← pixel of the image) makes of an 8-bit image; the part
-/// of it that lies inside keeps the rest of the frame filled by its mirror image.
-inline Photograph warped(const Photograph& photograph, const Eigen::Matrix3d& homography) {
-  const auto& from = std::get<Image<std::uint8_t>>(photograph.pixels);
-  const int type = CV_MAKETYPE(CV_8U, from.channels());
-  const cv::Mat source(from.height(), from.width(), type, const_cast<std::uint8_t*>(from.row(0)),
-                       from.view().stride());
-  Image<std::uint8_t> result(from.width(), from.height(), from.channels());
-  cv::Mat target(from.height(), from.width(), type, result.row(0), result.view().stride());
-  cv::Mat matrix(3, 3, CV_64F);
-  for (int i = 0; i < 9; ++i) {
-    matrix.at<double>(i / 3, i % 3) = homography(i / 3, i % 3);
-  }
-  cv::warpPerspective(source, target, matrix, source.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT);
-  return {std::move(result)};
 }
 
 /// A rendered scene as a pair of cameras sees it that have been turned by some degrees.
