@@ -1,6 +1,7 @@
 #include "engine/sequence/flicker.h"
 
 #include "tests/engine/engine_test.h"
+#include "tests/engine/plain_still_pixels.h"
 
 namespace vantage::flicker_test {
 
@@ -52,26 +53,8 @@ FlickerSums add(FlickerMeter& meter, const MadeUpFrame& frame, const std::vector
   return meter.add(frame.left, frame.map.view(), views, execution);
 }
 
-/// The largest mean difference over 3×3 pixels among the 3×3 pixels around.
 bool is_still(const MadeUpFrame& a, const MadeUpFrame& b, int x, int y) {
-  const auto& before = a.grey(a.left);
-  const auto& now = b.grey(b.left);
-  for (int v = std::max(0, y - 1); v <= std::min(kHeight - 1, y + 1); ++v) {
-    for (int u = std::max(0, x - 1); u <= std::min(kWidth - 1, x + 1); ++u) {
-      int sum = 0;
-      for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) {
-          const int column = std::clamp(u + i, 0, kWidth - 1);
-          const int row = std::clamp(v + j, 0, kHeight - 1);
-          sum += now.at(column, row) - before.at(column, row);
-        }
-      }
-      if (std::abs(sum) > 27) {
-        return false;
-      }
-    }
-  }
-  return true;
+  return test::is_still(a.grey(a.left), b.grey(b.left), x, y, 3);
 }
 
 FlickerSums plain_sums(const MadeUpFrame& a, const MadeUpFrame& b,

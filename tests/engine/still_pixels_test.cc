@@ -2,6 +2,7 @@
 
 #include "engine/generation/portable_random.h"
 #include "tests/engine/engine_test.h"
+#include "tests/engine/plain_still_pixels.h"
 
 namespace vantage::still_pixels_test {
 
@@ -12,28 +13,6 @@ Image<std::uint8_t> random_levels(int width, int height, unsigned seed) {
     levels.at(x, y) = static_cast<std::uint8_t>(random());
   }
   return levels;
-}
-
-/// The definition, one pixel after the other.
-bool is_still(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b, int x, int y,
-              double threshold) {
-  const auto column = [&](int c) { return std::clamp(c, 0, a.width() - 1); };
-  const auto row = [&](int r) { return std::clamp(r, 0, a.height() - 1); };
-  for (int v = y - 1; v <= y + 1; ++v) {
-    for (int u = x - 1; u <= x + 1; ++u) {
-      double sum = 0;
-      for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) {
-          sum += a.at(column(column(u) + i), row(row(v) + j)) -
-                 b.at(column(column(u) + i), row(row(v) + j));
-        }
-      }
-      if (std::abs(sum) / 9 > threshold + 1e-9) {
-        return false;
-      }
-    }
-  }
-  return true;
 }
 
 TEST(StillPixels, FollowTheDefinition) {
