@@ -76,7 +76,7 @@ std::string take_note(SettingValue& entry) {
   if (note == entry.end()) {
     return "";
   }
-  std::string text = to_text(*note);
+  std::string text = vantage::to_text(*note);
   entry.erase(note);
   return text;
 }
