@@ -2,10 +2,13 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/image/disparity_maps.h"
 #include "engine/matching/aggregation/edge_weights.h"
+#include "engine/matching/chain/match_chain.h"
 #include "engine/matching/costs/cost_image.h"
 #include "engine/matching/search/coarse_to_fine/coarse_levels.h"
 #include "engine/matching/search/coarse_to_fine/searched_parts.h"
