@@ -22,9 +22,8 @@ struct BicubicFetchRow {
 /// One bicubic interpolation (Keys, a = −½) along the row. A tap outside the image or on another
 /// surface takes the value of its neighbour towards the centre, so colours do not mix across depth
 /// discontinuities. Results are clamped to 0..largest_value, or to the range of the taps where that
-/// is wider. Holes become 0. Identical on every instruction set and to the reference.
+/// is wider. Holes become 0. Identical on every instruction set.
 void fetch_bicubic_row(const BicubicFetchRow& row, float* colours);
-void fetch_bicubic_row_ref(const BicubicFetchRow& row, float* colours);
 
 /// Colours of one warped scanline, moved as in the book: the source pixel itself, or, in sampling
 /// gaps, linear interpolation between the two nearest ones.

@@ -34,13 +34,9 @@ struct SurfaceFetchRow {
 /// Writes pixel_lanes(channels) values per pixel (pixel_row.h), in 0..kLargestValue<T>; for floats
 /// in the range of the taps where that is wider. Holes become 0. Where y is an integer, the result
 /// equals fetch_bicubic_row(), for floats outside 0..1 up to that range. Identical on every
-/// instruction set and to the reference.
+/// instruction set.
 void fetch_surface_row(const SurfaceFetchRow<std::uint8_t>& row, float* colours);
 void fetch_surface_row(const SurfaceFetchRow<std::uint16_t>& row, float* colours);
 void fetch_surface_row(const SurfaceFetchRow<float>& row, float* colours);
-
-void fetch_surface_row_ref(const SurfaceFetchRow<std::uint8_t>& row, float* colours);
-void fetch_surface_row_ref(const SurfaceFetchRow<std::uint16_t>& row, float* colours);
-void fetch_surface_row_ref(const SurfaceFetchRow<float>& row, float* colours);
 
 }  // namespace vantage::kernels
