@@ -1,13 +1,7 @@
 #include "kernels/candidate_gather/candidate_gather.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdint>
-#include <random>
-#include <vector>
-
 #include "kernels/row_resampling/row_resampling.h"
+#include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels::candidate_gather_test {
 

@@ -1,15 +1,9 @@
 #include "kernels/edge_snapping/edge_snapping.h"
 
-#include <gtest/gtest.h>
-
 #include <bit>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
-#include <random>
-#include <vector>
+
+#include "tests/kernels/kernel_test_utils.h"
 
 namespace vantage::kernels::edge_snapping_test {
 

@@ -1,15 +1,10 @@
 #include "scheduler/executor.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <memory>
 #include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "tests/scheduler/executor_cases.h"
 

@@ -1,20 +1,14 @@
 #include "scheduler/frame_pipeline.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <stdexcept>
-#include <string>
 #include <string_view>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "tests/scheduler/executor_cases.h"
 #include "tests/test_sample.h"

@@ -1,7 +1,5 @@
 #include "scheduler/processor_account.h"
 
-#include <gtest/gtest.h>
-
 #include <ctime>
 
 #include "tests/scheduler/executor_cases.h"

@@ -1,23 +1,15 @@
 #include "scheduler/strip_pipeline.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstring>
 #include <map>
-#include <memory>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "tests/scheduler/executor_cases.h"
 #include "tests/scheduler/test_chains.h"
-#include "tests/scheduler/test_stages.h"
 #include "tests/test_sample.h"
 
 namespace vantage::scheduler::strip_pipeline_test {

@@ -1,8 +1,5 @@
-#include <gtest/gtest.h>
 
-#include <cstddef>
 #include <cstring>
-#include <vector>
 
 #include "scheduler/strip_pipeline.h"
 #include "tests/scheduler/executor_cases.h"

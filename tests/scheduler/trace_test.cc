@@ -1,16 +1,12 @@
 #include "scheduler/trace.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <map>
 #include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "scheduler/frame_pipeline.h"
 #include "scheduler/strip_pipeline.h"

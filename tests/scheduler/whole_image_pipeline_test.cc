@@ -1,16 +1,10 @@
 #include "scheduler/whole_image_pipeline.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <utility>
-#include <vector>
 
 #include "tests/scheduler/test_chains.h"
-#include "tests/scheduler/test_stages.h"
 
 // The oracle of the strip pipeline against plain loops over arrays.
 
