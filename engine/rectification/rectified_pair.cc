@@ -97,15 +97,10 @@ PixelRectangle pixels_within(const RayWindow& inner, const RayWindow& shown, int
 }
 
 RectifiedPair unchanged_pair(const StereoCalibration& calibration, int width_px, int height_px) {
-  const auto camera = [](const Eigen::Matrix3d& matrix) {
-    return RectifiedCamera{.matrix = matrix,
-                           .rotation = Eigen::Matrix3d::Identity(),
-                           .homography = Eigen::Matrix3d::Identity()};
-  };
   return {.width_px = width_px,
           .height_px = height_px,
-          .left = camera(calibration.left.matrix),
-          .right = camera(calibration.right.matrix),
+          .left = {.matrix = calibration.left.matrix},
+          .right = {.matrix = calibration.right.matrix},
           .baseline = calibration.baseline(),
           .doffs_px = calibration.doffs_px(),
           .valid = {.x = 0, .y = 0, .width = width_px, .height = height_px}};

@@ -30,9 +30,10 @@ struct PixelRectangle {
 
 /// A camera rotated to form a rectified pair with another one.
 struct RectifiedCamera {
-  Eigen::Matrix3d matrix;      ///< K of the rectified image
-  Eigen::Matrix3d rotation;    ///< rectified frame ← frame of the camera
-  Eigen::Matrix3d homography;  ///< rectified pixel ← undistorted pixel of the camera
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();    ///< K of the rectified image
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< rectified frame ← that of the camera
+  /// Rectified pixel ← undistorted pixel of the camera.
+  Eigen::Matrix3d homography = Eigen::Matrix3d::Identity();
 };
 
 /// Rectified cameras side by side on a common X axis: a point (X, Y, Z) of the left one's frame is

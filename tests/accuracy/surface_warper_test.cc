@@ -20,8 +20,6 @@ RectifiedPair ideal_pair(int width, int height, double focal_length_px) {
   pair.height_px = height;
   pair.left.matrix << focal_length_px, 0, (width - 1) / 2.0, 0, focal_length_px, (height - 1) / 2.0,
       0, 0, 1;
-  pair.left.rotation.setIdentity();
-  pair.left.homography.setIdentity();
   pair.right = pair.left;
   pair.baseline = 1;
   return pair;
