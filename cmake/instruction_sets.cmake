@@ -2,7 +2,7 @@
 #
 # VANTAGE_INSTRUCTION_SETS is a list of Highway's names and of `best`, which is what this machine has
 # at best, for a program that stays here. On x86 the least of them is what a processor must have: by
-# default SSE4.2, as all have since 2011.
+# default SSE4, that is SSE4.2 and AES, as nearly all have since 2013.
 set(VANTAGE_INSTRUCTION_SETS SSE4 AVX2 AVX3 AVX3_DL CACHE STRING
   "Instruction sets of the kernels: names of Highway's, and best")
 
