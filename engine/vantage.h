@@ -58,10 +58,10 @@
 #include "engine/view_geometry/view_pose.h"
 
 // Sequences of pairs.
-#include "engine/sequence/pair_source.h"
-#include "engine/sequence/run_journal.h"
-#include "engine/sequence/sequence_layout.h"
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/journal/run_journal.h"
+#include "engine/sequence/options/sequence_layout.h"
+#include "engine/sequence/options/sequence_options.h"
+#include "engine/sequence/pairs/pair_source.h"
 #include "engine/sequence/sequence_runner.h"
 
 // Accuracy of maps and views.

@@ -17,7 +17,7 @@
 #include "engine/image/stereo_packing.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/video_io.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 namespace vantage::perf {
 

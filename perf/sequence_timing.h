@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "engine/execution.h"
-#include "engine/sequence/run_journal.h"
-#include "engine/sequence/sequence_layout.h"
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/journal/run_journal.h"
+#include "engine/sequence/options/sequence_layout.h"
+#include "engine/sequence/options/sequence_options.h"
 #include "engine/sequence/sequence_runner.h"
 #include "perf/opencv_loop.h"
 #include "perf/sequence_inputs.h"

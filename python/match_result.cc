@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include "engine/sequence/preview_range.h"
+#include "engine/sequence/shots/preview_range.h"
 #include "python/arrays.h"
 #include "python/calls.h"
 

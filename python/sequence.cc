@@ -17,7 +17,7 @@
 #include "engine/options/synthesis_settings.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/sequence/frame_iterator.h"
-#include "engine/sequence/sequence_range.h"
+#include "engine/sequence/pairs/sequence_range.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"

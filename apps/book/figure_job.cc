@@ -19,7 +19,7 @@
 #include "engine/error.h"
 #include "engine/figures/figure_table.h"
 #include "engine/io/files/atomic_file.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/options/sequence_layout.h"
 #include "engine/simd.h"
 #include "scheduler/machine.h"
 

@@ -18,8 +18,8 @@
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/jobs/flicker_values.h"
-#include "engine/sequence/delivered_frames.h"
-#include "engine/sequence/sequence_join.h"
+#include "engine/sequence/journal/delivered_frames.h"
+#include "engine/sequence/journal/sequence_join.h"
 
 namespace vantage::apps {
 namespace {

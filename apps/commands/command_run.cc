@@ -17,7 +17,7 @@
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
-#include "engine/sequence/sequence_join.h"
+#include "engine/sequence/journal/sequence_join.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {

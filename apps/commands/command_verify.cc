@@ -13,7 +13,7 @@
 #include "apps/run/verified_run.h"
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
-#include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/journal/delivered_frames.h"
 
 namespace vantage::apps {
 namespace {

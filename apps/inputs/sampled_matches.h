@@ -7,7 +7,7 @@
 #include "engine/execution.h"
 #include "engine/rectification/feature_matches.h"
 #include "engine/rectification/stereo_calibration.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 namespace vantage::apps {
 

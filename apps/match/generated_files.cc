@@ -9,7 +9,7 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/options/sequence_layout.h"
 
 namespace vantage::apps {
 

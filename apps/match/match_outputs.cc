@@ -3,7 +3,7 @@
 #include "engine/image/transposed.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
-#include "engine/sequence/preview_range.h"
+#include "engine/sequence/shots/preview_range.h"
 
 namespace vantage::apps {
 namespace {

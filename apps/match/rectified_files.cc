@@ -9,7 +9,7 @@
 #include "apps/process/outputs.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/options/sequence_layout.h"
 
 namespace vantage::apps {
 namespace {

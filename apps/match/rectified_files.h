@@ -5,7 +5,7 @@
 
 #include "apps/process/outputs.h"
 #include "engine/image/side.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 namespace vantage::apps {
 

@@ -25,7 +25,7 @@
 #include "engine/rectification/rectification_file.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/uncalibrated_rig.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 namespace vantage::apps {
 namespace {

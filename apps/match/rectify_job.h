@@ -7,7 +7,7 @@
 #include "engine/options/settings.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectifier.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 namespace vantage::apps {
 

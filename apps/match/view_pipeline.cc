@@ -13,7 +13,7 @@
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "engine/seconds_since.h"
-#include "engine/sequence/busy_clock.h"
+#include "engine/sequence/steps/busy_clock.h"
 #include "scheduler/frame_pipeline.h"
 
 namespace vantage::apps {

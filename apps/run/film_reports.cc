@@ -13,9 +13,9 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_descriptor.h"
 #include "engine/io/files/temporary_name.h"
-#include "engine/sequence/depth_picture.h"
-#include "engine/sequence/journal_content.h"
-#include "engine/sequence/shots.h"
+#include "engine/sequence/journal/journal_content.h"
+#include "engine/sequence/shots/depth_picture.h"
+#include "engine/sequence/shots/shots.h"
 
 namespace vantage::apps {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "engine/comfort/comfort_summary.h"
-#include "engine/sequence/delivered_frames.h"
-#include "engine/sequence/run_journal.h"
-#include "engine/sequence/sequence_layout.h"
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/journal/delivered_frames.h"
+#include "engine/sequence/journal/run_journal.h"
+#include "engine/sequence/options/sequence_layout.h"
+#include "engine/sequence/options/sequence_options.h"
 
 namespace vantage::apps {
 

@@ -13,8 +13,8 @@
 #include "engine/io/files/encoded_text.h"
 #include "engine/io/files/json_text.h"
 #include "engine/options/match_settings.h"
-#include "engine/sequence/run_journal.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/journal/run_journal.h"
+#include "engine/sequence/options/sequence_layout.h"
 
 namespace vantage::apps {
 namespace {

@@ -14,7 +14,7 @@
 #include "apps/settings/depth_settings.h"
 #include "engine/jobs/flicker_values.h"
 #include "engine/order_statistics.h"
-#include "engine/sequence/sequence_join.h"
+#include "engine/sequence/journal/sequence_join.h"
 
 namespace vantage::apps {
 namespace {

@@ -5,7 +5,7 @@
 #include "apps/reports/run_report.h"
 #include "apps/run/run_session.h"
 #include "apps/run/run_settings.h"
-#include "engine/sequence/delivered_frames.h"
+#include "engine/sequence/journal/delivered_frames.h"
 #include "engine/sequence/sequence_runner.h"
 
 namespace vantage::apps {

@@ -20,9 +20,9 @@
 #include "engine/jobs/list_columns.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/options/frame_step_setting.h"
-#include "engine/sequence/delivered_frames.h"
-#include "engine/sequence/sequence_layout.h"
-#include "engine/sequence/sequence_range.h"
+#include "engine/sequence/journal/delivered_frames.h"
+#include "engine/sequence/options/sequence_layout.h"
+#include "engine/sequence/pairs/sequence_range.h"
 #include "scheduler/interruption.h"
 
 namespace vantage::apps {

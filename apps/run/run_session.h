@@ -6,9 +6,9 @@
 #include "apps/run/run_settings.h"
 #include "apps/settings/applied_tuning.h"
 #include "engine/jobs/sequence_session.h"
+#include "engine/sequence/journal/run_journal.h"
 #include "engine/sequence/memory_plan.h"
-#include "engine/sequence/pair_cameras.h"
-#include "engine/sequence/run_journal.h"
+#include "engine/sequence/pairs/pair_cameras.h"
 
 namespace vantage::apps {
 

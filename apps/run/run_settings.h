@@ -10,7 +10,7 @@
 #include "apps/settings/common_options.h"
 #include "engine/jobs/sequence_job.h"
 #include "engine/options/settings.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/work_plan.h"
 
 namespace vantage::apps {

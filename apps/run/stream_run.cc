@@ -9,7 +9,7 @@
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "engine/error.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/stream_runner.h"
 
 namespace vantage::apps {

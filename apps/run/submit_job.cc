@@ -22,8 +22,8 @@
 #include "engine/io/files/json_text.h"
 #include "engine/options/setting_value.h"
 #include "engine/quoted_text.h"
-#include "engine/sequence/run_journal.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/journal/run_journal.h"
+#include "engine/sequence/options/sequence_layout.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {

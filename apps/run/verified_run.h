@@ -4,8 +4,8 @@
 
 #include "apps/process/progress.h"
 #include "engine/options/setting_value.h"
-#include "engine/sequence/run_verification.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/journal/run_verification.h"
+#include "engine/sequence/options/sequence_layout.h"
 
 namespace vantage::apps {
 

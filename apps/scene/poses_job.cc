@@ -19,7 +19,7 @@
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/scene_graph/edge_maps.h"
 #include "engine/scene_graph/posed_edges.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/options/sequence_layout.h"
 #include "engine/view_geometry/colmap_model.h"
 #include "engine/view_geometry/intrinsics_file.h"
 

@@ -2,7 +2,7 @@
 
 #include "engine/io/video/video_coding.h"
 #include "engine/options/settings.h"
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/options/sequence_options.h"
 
 namespace vantage::apps {
 

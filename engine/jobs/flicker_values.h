@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engine/options/setting_value.h"
-#include "engine/sequence/flicker.h"
+#include "engine/sequence/past/flicker.h"
 
 namespace vantage {
 

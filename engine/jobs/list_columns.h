@@ -9,8 +9,8 @@
 
 #include "engine/image/disparity_range.h"
 #include "engine/jobs/sequence_job.h"
-#include "engine/sequence/pair_cameras.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_cameras.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 namespace vantage {
 

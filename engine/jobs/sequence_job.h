@@ -10,8 +10,8 @@
 #include "engine/options/settings.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectified_pair.h"
-#include "engine/sequence/pair_source.h"
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/options/sequence_options.h"
+#include "engine/sequence/pairs/pair_source.h"
 #include "engine/sequence/work_plan.h"
 
 namespace vantage {

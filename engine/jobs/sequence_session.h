@@ -8,10 +8,10 @@
 #include "engine/jobs/list_columns.h"
 #include "engine/jobs/sequence_job.h"
 #include "engine/rectification/rectifier.h"
-#include "engine/sequence/frame_poses.h"
 #include "engine/sequence/memory_plan.h"
-#include "engine/sequence/pair_cameras.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/frame_poses.h"
+#include "engine/sequence/pairs/pair_cameras.h"
+#include "engine/sequence/pairs/pair_source.h"
 #include "engine/sequence/sequence_runner.h"
 #include "engine/sequence/work_plan.h"
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/options/settings.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 namespace vantage {
 

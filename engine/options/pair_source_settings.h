@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engine/options/settings.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 namespace vantage {
 

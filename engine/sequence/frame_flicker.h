@@ -1,8 +1,8 @@
 #pragma once
 
-#include "engine/sequence/flicker.h"
-#include "engine/sequence/frame_slot.h"
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/options/sequence_options.h"
+#include "engine/sequence/past/flicker.h"
+#include "engine/sequence/steps/frame_slot.h"
 
 namespace vantage {
 

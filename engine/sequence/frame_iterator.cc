@@ -15,8 +15,8 @@
 #include "engine/error.h"
 #include "engine/sequence/frame_feed.h"
 #include "engine/sequence/frame_flicker.h"
-#include "engine/sequence/frame_worker.h"
-#include "engine/sequence/step_accounts.h"
+#include "engine/sequence/steps/frame_worker.h"
+#include "engine/sequence/steps/step_accounts.h"
 #include "scheduler/frame_pipeline.h"
 #include "scheduler/interruption.h"
 

@@ -7,9 +7,9 @@
 #include "engine/execution.h"
 #include "engine/io/images/preview.h"
 #include "engine/reprojection/map_camera.h"
-#include "engine/sequence/flicker.h"
-#include "engine/sequence/frame_slot.h"
+#include "engine/sequence/past/flicker.h"
 #include "engine/sequence/sequence_runner.h"
+#include "engine/sequence/steps/frame_slot.h"
 
 namespace vantage {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "engine/execution.h"
-#include "engine/sequence/frame_worker.h"
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/options/sequence_options.h"
+#include "engine/sequence/steps/frame_worker.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {

@@ -2,9 +2,9 @@
 
 #include <string_view>
 
-#include "engine/sequence/frame_slot.h"
 #include "engine/sequence/sequence_runner.h"
-#include "engine/sequence/step_accounts.h"
+#include "engine/sequence/steps/frame_slot.h"
+#include "engine/sequence/steps/step_accounts.h"
 
 namespace vantage {
 

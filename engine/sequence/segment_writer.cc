@@ -11,7 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/image/stereo_display.h"
-#include "engine/sequence/pending_files.h"
+#include "engine/sequence/journal/pending_files.h"
 
 namespace vantage {
 

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "engine/io/video/video_io.h"
-#include "engine/sequence/frame_range.h"
-#include "engine/sequence/frame_worker.h"
-#include "engine/sequence/sequence_layout.h"
+#include "engine/sequence/options/sequence_layout.h"
+#include "engine/sequence/pairs/frame_range.h"
+#include "engine/sequence/steps/frame_worker.h"
 
 namespace vantage {
 

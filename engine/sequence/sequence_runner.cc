@@ -12,15 +12,15 @@
 
 #include "engine/error.h"
 #include "engine/seconds_since.h"
-#include "engine/sequence/commit_queue.h"
-#include "engine/sequence/delivered_frames.h"
 #include "engine/sequence/frame_feed.h"
 #include "engine/sequence/frame_flicker.h"
-#include "engine/sequence/frame_memory.h"
-#include "engine/sequence/frame_worker.h"
-#include "engine/sequence/leftovers.h"
+#include "engine/sequence/journal/commit_queue.h"
+#include "engine/sequence/journal/delivered_frames.h"
+#include "engine/sequence/journal/leftovers.h"
 #include "engine/sequence/run_totals.h"
 #include "engine/sequence/segment_writer.h"
+#include "engine/sequence/steps/frame_memory.h"
+#include "engine/sequence/steps/frame_worker.h"
 #include "scheduler/frame_pipeline.h"
 
 namespace vantage {

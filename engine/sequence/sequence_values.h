@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engine/combinations/option_values.h"
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/options/sequence_options.h"
 
 namespace vantage {
 

@@ -7,10 +7,10 @@
 
 #include "engine/error.h"
 #include "engine/sequence/frame_feed.h"
-#include "engine/sequence/frame_memory.h"
-#include "engine/sequence/frame_worker.h"
-#include "engine/sequence/pending_files.h"
-#include "engine/sequence/step_accounts.h"
+#include "engine/sequence/journal/pending_files.h"
+#include "engine/sequence/steps/frame_memory.h"
+#include "engine/sequence/steps/frame_worker.h"
+#include "engine/sequence/steps/step_accounts.h"
 #include "scheduler/frame_pipeline.h"
 
 namespace vantage {

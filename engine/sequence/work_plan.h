@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/sequence/frame_range.h"
+#include "engine/sequence/pairs/frame_range.h"
 
 namespace vantage {
 

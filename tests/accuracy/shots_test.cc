@@ -1,4 +1,4 @@
-#include "engine/sequence/shots.h"
+#include "engine/sequence/shots/shots.h"
 
 #include "engine/generation/layered_scene.h"
 #include "engine/matching/stereo_matcher.h"

@@ -1,4 +1,4 @@
-#include "engine/sequence/commit_queue.h"
+#include "engine/sequence/journal/commit_queue.h"
 
 #include "tests/engine/engine_test.h"
 

@@ -1,4 +1,4 @@
-#include "engine/sequence/depth_picture.h"
+#include "engine/sequence/shots/depth_picture.h"
 
 #include "tests/engine/engine_test.h"
 

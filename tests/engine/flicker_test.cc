@@ -1,4 +1,4 @@
-#include "engine/sequence/flicker.h"
+#include "engine/sequence/past/flicker.h"
 
 #include "tests/engine/engine_test.h"
 #include "tests/engine/plain_still_pixels.h"

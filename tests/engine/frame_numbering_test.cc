@@ -1,4 +1,4 @@
-#include "engine/sequence/frame_numbering.h"
+#include "engine/sequence/pairs/frame_numbering.h"
 
 #include "engine/io/video/image_sequence.h"
 #include "tests/engine/engine_test.h"

@@ -1,4 +1,4 @@
-#include "engine/sequence/frame_poses.h"
+#include "engine/sequence/pairs/frame_poses.h"
 
 #include "tests/engine/engine_test.h"
 

@@ -1,4 +1,4 @@
-#include "engine/sequence/frame_reuse.h"
+#include "engine/sequence/past/frame_reuse.h"
 
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/engine_test.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engine/generation/book_pairs.h"
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 #include "tests/engine/engine_test.h"
 
 namespace vantage {

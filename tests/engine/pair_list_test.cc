@@ -1,4 +1,4 @@
-#include "engine/sequence/pair_list.h"
+#include "engine/sequence/pairs/pair_list.h"
 
 #include "tests/engine/engine_test.h"
 

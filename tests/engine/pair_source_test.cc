@@ -1,4 +1,4 @@
-#include "engine/sequence/pair_source.h"
+#include "engine/sequence/pairs/pair_source.h"
 
 #include "tests/engine/engine_test.h"
 #include "tests/engine/frame_test_support.h"

@@ -1,8 +1,8 @@
 // Pairs of made-up frames: bad ones, gaps in time, ends that come early.
 
-#include "engine/sequence/moving_camera_pairs.h"
-#include "engine/sequence/packed_pairs.h"
-#include "engine/sequence/two_camera_pairs.h"
+#include "engine/sequence/pairs/moving_camera_pairs.h"
+#include "engine/sequence/pairs/packed_pairs.h"
+#include "engine/sequence/pairs/two_camera_pairs.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/frame_test_support.h"
 

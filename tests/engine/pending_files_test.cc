@@ -1,4 +1,4 @@
-#include "engine/sequence/pending_files.h"
+#include "engine/sequence/journal/pending_files.h"
 
 #include "tests/engine/engine_test.h"
 

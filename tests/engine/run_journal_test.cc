@@ -1,7 +1,7 @@
-#include "engine/sequence/run_journal.h"
+#include "engine/sequence/journal/run_journal.h"
 
-#include "engine/sequence/delivered_frames.h"
-#include "engine/sequence/run_verification.h"
+#include "engine/sequence/journal/delivered_frames.h"
+#include "engine/sequence/journal/run_verification.h"
 #include "tests/engine/engine_test.h"
 
 namespace vantage::run_journal_test {

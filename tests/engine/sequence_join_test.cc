@@ -1,4 +1,4 @@
-#include "engine/sequence/sequence_join.h"
+#include "engine/sequence/journal/sequence_join.h"
 
 #include "engine/io/video/video_io.h"
 #include "tests/engine/engine_test.h"

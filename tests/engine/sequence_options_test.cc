@@ -1,4 +1,4 @@
-#include "engine/sequence/sequence_options.h"
+#include "engine/sequence/options/sequence_options.h"
 
 #include "tests/engine/engine_test.h"
 

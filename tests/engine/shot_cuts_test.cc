@@ -1,4 +1,4 @@
-#include "engine/sequence/shot_cuts.h"
+#include "engine/sequence/shots/shot_cuts.h"
 
 #include "tests/engine/engine_test.h"
 

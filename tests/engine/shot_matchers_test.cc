@@ -1,4 +1,4 @@
-#include "engine/sequence/shot_matchers.h"
+#include "engine/sequence/shots/shot_matchers.h"
 
 #include "tests/engine/engine_test.h"
 

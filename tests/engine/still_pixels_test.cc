@@ -1,4 +1,4 @@
-#include "engine/sequence/still_pixels.h"
+#include "engine/sequence/past/still_pixels.h"
 
 #include "engine/generation/portable_random.h"
 #include "tests/engine/engine_test.h"

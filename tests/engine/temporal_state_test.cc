@@ -1,4 +1,4 @@
-#include "engine/sequence/temporal_state.h"
+#include "engine/sequence/past/temporal_state.h"
 
 #include "engine/generation/portable_random.h"
 #include "tests/engine/engine_test.h"

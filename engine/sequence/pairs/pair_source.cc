@@ -1,0 +1,167 @@
+#include "engine/sequence/pairs/pair_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/io/video/image_sequence.h"
+#include "engine/io/video/raw_video.h"
+#include "engine/sequence/pairs/every_nth_pair.h"
+#include "engine/sequence/pairs/moving_camera_pairs.h"
+#include "engine/sequence/pairs/packed_pairs.h"
+#include "engine/sequence/pairs/pair_list.h"
+#include "engine/sequence/pairs/several_cameras.h"
+#include "engine/sequence/pairs/streamed_pairs.h"
+#include "engine/sequence/pairs/two_camera_pairs.h"
+
+namespace vantage {
+namespace {
+
+constexpr int kMaxOffset = 1000000;
+constexpr int kMaxStep = 1000;
+constexpr double kMinTakenSeconds = 0.001;
+constexpr double kMaxTakenSeconds = 86400;
+
+std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file) {
+  std::vector<std::filesystem::path> left;
+  std::vector<std::filesystem::path> right;
+  std::vector<PairDetails> details;
+  for (ListedPair& pair : read_pair_list(file)) {
+    left.push_back(std::move(pair.left));
+    right.push_back(std::move(pair.right));
+    details.push_back(std::move(pair.details));
+  }
+  const auto open_column = [&](const char* column, std::vector<std::filesystem::path> names) {
+    return std::make_unique<ListedImages>(fmt::format("{} ({} column)", file.string(), column),
+                                          file.parent_path(), std::move(names));
+  };
+  auto pairs = std::make_unique<TwoCameraPairs>(open_column("left", std::move(left)),
+                                                open_column("right", std::move(right)), 0, false);
+  pairs->set_details(std::move(details));
+  return pairs;
+}
+
+void validate_step(const FrameStep& every) {
+  if (every.pairs < 1 || every.pairs > FrameStep::kMaxPairs) {
+    throw UsageError(fmt::format("every is {}, expected 1 to {} frames, or seconds such as 4s",
+                                 every.pairs, FrameStep::kMaxPairs));
+  }
+  if (every.first < 0 || every.first > std::numeric_limits<int>::max() - 1 - FrameStep::kMaxPairs) {
+    throw UsageError(fmt::format("every starts at frame {}, expected 0 to {}", every.first,
+                                 std::numeric_limits<int>::max() - 1 - FrameStep::kMaxPairs));
+  }
+  if (every.seconds &&
+      !(*every.seconds >= kMinTakenSeconds && *every.seconds <= kMaxTakenSeconds)) {
+    throw UsageError(fmt::format("every is {}s, expected {} to {} seconds", *every.seconds,
+                                 kMinTakenSeconds, kMaxTakenSeconds));
+  }
+}
+
+/// In pairs.
+int taken_step(const FrameStep& every, const PairSource& pairs) {
+  if (!every.seconds) {
+    return every.pairs;
+  }
+  const std::optional<FrameRate> rate = pairs.frame_rate();
+  if (!rate) {
+    throw UsageError(
+        fmt::format("every is {}s, but images have no frame rate; expected a number of frames",
+                    *every.seconds));
+  }
+  const double frames = std::round(*every.seconds * rate->per_second());
+  return static_cast<int>(std::clamp(frames, 1.0, static_cast<double>(FrameStep::kMaxPairs)));
+}
+
+std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
+  if (options.stereo == "-") {
+    return std::make_unique<PackedPairs>(
+        std::make_unique<StreamedVideo>(options.raw_video, options.raw_rate, options.stop),
+        *options.packing);
+  }
+  if (!options.stereo.empty()) {
+    return std::make_unique<PackedPairs>(open_frame_source(options.stereo), *options.packing);
+  }
+  if (!options.pairs.empty()) {
+    return open_pair_list(options.pairs);
+  }
+  if (!options.sequence.empty()) {
+    return make_moving_camera_pairs(open_frame_source(options.sequence), options.step);
+  }
+  auto pairs = std::make_unique<TwoCameraPairs>(open_frame_source(options.left),
+                                                open_frame_source(options.right),
+                                                options.offset_frames, true);
+  if (options.more.empty()) {
+    return pairs;
+  }
+  std::vector<std::unique_ptr<FrameSource>> more;
+  for (const std::string& source : options.more) {
+    more.push_back(open_frame_source(source));
+  }
+  return std::make_unique<SeveralCameras>(std::move(pairs), std::move(more));
+}
+
+}  // namespace
+
+void PairSourceOptions::validate() const {
+  const bool two_cameras = !left.empty() || !right.empty();
+  const int kinds = (two_cameras ? 1 : 0) + (stereo.empty() ? 0 : 1) + (pairs.empty() ? 0 : 1) +
+                    (sequence.empty() ? 0 : 1);
+  if (kinds != 1) {
+    throw UsageError(
+        fmt::format("{} input{} given, expected exactly one of left and right, stereo, pairs, "
+                    "sequence",
+                    kinds == 0 ? "no" : "several kinds of", kinds == 0 ? " is" : " are"));
+  }
+  if (two_cameras && (left.empty() || right.empty())) {
+    throw UsageError(left.empty() ? "right is given without left" : "left is given without right");
+  }
+  if (offset_frames < -kMaxOffset || offset_frames > kMaxOffset) {
+    throw UsageError(fmt::format("offset is {}, expected {}..{} frames", offset_frames, -kMaxOffset,
+                                 kMaxOffset));
+  }
+  if (offset_frames != 0 && !two_cameras) {
+    throw UsageError(fmt::format("offset is {}, expected 0 without left and right", offset_frames));
+  }
+  if (!more.empty() && !two_cameras) {
+    throw UsageError("more is given, expected it with left and right only");
+  }
+  if (!stereo.empty() && !packing) {
+    throw UsageError("stereo needs packing, such as sbsl");
+  }
+  if (packing && stereo.empty()) {
+    throw UsageError("packing is given without stereo");
+  }
+  if (step == 0 || step < -kMaxStep || step > kMaxStep) {
+    throw UsageError(
+        fmt::format("step is {}, expected 1 to {} frames or -1 to -{}", step, kMaxStep, kMaxStep));
+  }
+  if (step != 1 && sequence.empty()) {
+    throw UsageError(fmt::format("step is {}, expected 1 without sequence", step));
+  }
+  validate_step(every);
+}
+
+void PairSource::decode(FramePair& pair) const {
+  pair.fetched[0].decode();
+  pair.left.pixels.swap(pair.fetched[0].photograph.pixels);
+  if (pair.wants_right) {
+    pair.fetched[1].decode();
+    pair.right.pixels.swap(pair.fetched[1].photograph.pixels);
+  }
+}
+
+std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
+  options.validate();
+  std::unique_ptr<PairSource> all = open_all_pairs(options);
+  if (!options.every.takes_all()) {
+    const int step = taken_step(options.every, *all);
+    all = std::make_unique<EveryNthPair>(std::move(all), options.every.first, step);
+  }
+  return options.stereo == "-" ? std::make_unique<StreamedPairs>(std::move(all)) : std::move(all);
+}
+
+}  // namespace vantage

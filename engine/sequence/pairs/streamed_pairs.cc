@@ -1,0 +1,79 @@
+#include "engine/sequence/pairs/streamed_pairs.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include "engine/error.h"
+
+namespace vantage {
+namespace {
+
+constexpr std::size_t kMaxHeld = 16;
+constexpr std::size_t kMaxHeldBytes = std::size_t{256} << 20;
+
+}  // namespace
+
+bool StreamedPairs::fetch_from_source(FramePair& pair) {
+  if (std::exchange(source_index_, next_index_ + 1) != next_index_) {
+    source_->skip_to(next_index_);
+  }
+  ++next_index_;
+  return source_->fetch(pair);
+}
+
+bool StreamedPairs::fetch_and_hold(FramePair& pair) {
+  if (held_.empty()) {
+    first_held_ = next_index_;
+  }
+  Held held;
+  try {
+    if (!fetch_from_source(pair)) {
+      return false;
+    }
+    const std::size_t bytes = std::max<std::size_t>(1, pair.fetched[0].picture.bytes());
+    limit_ = static_cast<int>(std::clamp<std::size_t>(kMaxHeldBytes / bytes, 1, kMaxHeld));
+    held = {pair.fetched[0].picture.share(), pair.index, pair.remarks, nullptr};
+  } catch (const Error&) {
+    held.problem = std::current_exception();
+  }
+  const std::exception_ptr problem = held.problem;
+  held_.push_back(std::move(held));
+  if (problem) {
+    std::rethrow_exception(problem);
+  }
+  return true;
+}
+
+void StreamedPairs::give_held(FramePair& pair) {
+  const int place = next_index_++ - first_held_;
+  const Held& held = held_[static_cast<std::size_t>(place)];
+  const std::exception_ptr problem = held.problem;
+  FetchedFrame& frame = pair.fetched[0];
+  frame.file.clear();
+  frame.frames_missing = 0;
+  frame.picture = held.picture.share();
+  frame.remarks = held.remarks;
+  pair.index = held.index;
+  pair.remarks = held.remarks;
+  if (!holds_) {
+    held_.erase(held_.begin(), held_.begin() + place + 1);
+    first_held_ = next_index_;
+  }
+  if (problem) {
+    std::rethrow_exception(problem);
+  }
+}
+
+bool StreamedPairs::fetch(FramePair& pair) {
+  const auto held_end = first_held_ + static_cast<int>(held_.size());
+  if (!held_.empty() && next_index_ >= first_held_ && next_index_ < held_end) {
+    give_held(pair);
+    return true;
+  }
+  const bool has_room =
+      held_.empty() || (next_index_ == held_end && next_index_ < first_held_ + limit_);
+  return holds_ && has_room ? fetch_and_hold(pair) : fetch_from_source(pair);
+}
+
+}  // namespace vantage
