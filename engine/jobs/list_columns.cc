@@ -9,7 +9,7 @@
 #include "engine/error.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/maps/map_io.h"
-#include "engine/sequence/sequence_values.h"
+#include "engine/sequence/options/sequence_values.h"
 
 namespace vantage {
 namespace {

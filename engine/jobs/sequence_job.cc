@@ -13,7 +13,7 @@
 #include "engine/options/match_settings.h"
 #include "engine/options/pair_source_settings.h"
 #include "engine/sequence/memory_plan.h"
-#include "engine/sequence/sequence_values.h"
+#include "engine/sequence/options/sequence_values.h"
 
 namespace vantage {
 namespace {

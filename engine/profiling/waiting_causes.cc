@@ -4,16 +4,17 @@
 #include <array>
 #include <cstddef>
 
+#include "engine/sequence/steps/step_list.h"
+
 namespace vantage {
 namespace {
 
 using scheduler::SpanKind;
 using scheduler::SpanRecord;
 
-constexpr std::array<std::string_view, 5> kReadingSpans = {"open", "read", "read frame",
-                                                           "prepare frame", "decode"};
-constexpr std::array<std::string_view, 6> kWritingSpans = {"write",       "encode frame", "encode",
-                                                           "write frame", "deliver",      "join"};
+// Beside the steps of a frame: those of commands, and the parts of the pipeline of frames.
+constexpr std::array<std::string_view, 3> kReadingSpans = {"open", "read frame", "prepare frame"};
+constexpr std::array<std::string_view, 3> kWritingSpans = {"encode frame", "write frame", "join"};
 constexpr std::string_view kDiskWait = "disk";
 
 /// A change in the number of active threads of a kind.
@@ -77,6 +78,10 @@ bool divide(double waiting_s, const Counts& counts, std::size_t first, WaitingCa
 }  // namespace
 
 WorkKind work_kind(std::string_view span_name) {
+  const auto step = std::ranges::find(frame_steps(), span_name, &StepEntry::name);
+  if (step != frame_steps().end()) {
+    return step->kind;
+  }
   if (std::ranges::find(kReadingSpans, span_name) != kReadingSpans.end()) {
     return WorkKind::kReading;
   }

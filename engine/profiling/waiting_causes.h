@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/sequence/steps/run_step.h"
 #include "scheduler/trace.h"
 
 namespace vantage {
@@ -21,13 +22,7 @@ struct ThreadPiece {
 /// therefore sorted from outside; in order, disjoint, none empty. Time in joins alone is no piece.
 std::vector<ThreadPiece> thread_pieces(const scheduler::ThreadTrace& thread);
 
-/// Kinds of work, by span names.
-enum class WorkKind {
-  kReading,    ///< reading or decoding images
-  kComputing,  ///< anything else
-  kWriting     ///< encoding or writing results
-};
-
+/// That of a step of a frame or command; kComputing for other spans.
 WorkKind work_kind(std::string_view span_name);
 
 /// Seconds that threads of the pool waited, by cause.

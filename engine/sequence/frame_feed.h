@@ -21,9 +21,13 @@ class FrameFeed {
   /// Number of frames to deliver.
   [[nodiscard]] int frames_total() const { return frames_total_; }
 
+  [[nodiscard]] bool is_at_end() const { return run_ == runs_.size(); }
+  /// There are no more frames.
+  void end() { run_ = runs_.size(); }
+
   /// Returns the next frame; false at the end.
   bool next(int& frame, bool& is_lead_in) {
-    if (run_ == runs_.size()) {
+    if (is_at_end()) {
       return false;
     }
     frame = next_frame_++;

@@ -13,11 +13,10 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/sequence/frame_feed.h"
 #include "engine/sequence/frame_flicker.h"
-#include "engine/sequence/steps/frame_worker.h"
-#include "engine/sequence/steps/step_accounts.h"
-#include "scheduler/frame_pipeline.h"
+#include "engine/sequence/frame_flow.h"
+#include "engine/sequence/shots/depth_picture.h"
+#include "engine/sequence/steps/frame_needs.h"
 #include "scheduler/interruption.h"
 
 namespace vantage {
@@ -35,19 +34,16 @@ FrameSelection selection_of(const SequenceRun& run, const std::vector<int>& fram
 
 }  // namespace
 
-class FrameIterator::Work {
+class FrameIterator::Work final : private FrameFlow {
  public:
-  Work(const SequenceOptions& options, const SequenceRun& run, const std::vector<int>& frames,
-       Execution& execution)
-      : run_(run),
-        layout_("-", options),
-        execution_(execution),
-        worker_({options, layout_, run.pairs, run.frame_size, run.rectifier, run.pair_cameras,
-                 run.cameras, run.map_camera, run.poses, run.shots, execution, accounts_}),
-        feed_(plan_work(selection_of(run, frames), dependence_of(options, layout_),
-                        [&](int frame) { return !std::ranges::binary_search(frames, frame); })),
+  Work(const SequenceOptions& options, const SequenceLayout& layout, const SequenceRun& run,
+       const std::vector<int>& frames, Execution& execution)
+      : FrameFlow(options, layout, run,
+                  plan_work(selection_of(run, frames), dependence_of(options, layout),
+                            [&](int frame) { return !std::ranges::binary_search(frames, frame); }),
+                  false, execution),
+        options_(options),
         flicker_(options, execution),
-        slots_(static_cast<std::size_t>(run.in_flight)),
         thread_([this] { compute_all(); }) {}
 
   Work(const Work&) = delete;
@@ -103,7 +99,7 @@ class FrameIterator::Work {
   void compute_all() {
     try {
       while (may_continue()) {
-        compute_some();
+        (void)flow(nullptr);
       }
     } catch (...) {
       const std::scoped_lock lock(mutex_);
@@ -118,64 +114,26 @@ class FrameIterator::Work {
 
   bool may_continue() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return is_stopped_ || ahead_ <= run_.in_flight / 2; });
-    return !is_stopped_ && !is_read_;
+    changed_.wait(lock, [&] { return is_stopped_ || ahead_ <= run().in_flight / 2; });
+    return !is_stopped_ && !is_at_end();
   }
 
-  void compute_some() {
-    scheduler::FrameSteps steps;
-    const auto within = [this](void (Work::*step)(FrameSlot&)) {
-      return [this, step](int slot) {
-        scheduler::InterruptibleScope scope([this] { return is_stopped_.load(); });
-        (this->*step)(*slots_[static_cast<std::size_t>(slot)]);
-      };
-    };
-    steps.read = [this](int slot) { return read(slots_[static_cast<std::size_t>(slot)]); };
-    steps.prepare = within(&Work::prepare);
-    steps.compute = within(&Work::compute);
-    steps.encode = within(&Work::finish);
-    steps.write = [this](int slot) { write(slots_[static_cast<std::size_t>(slot)]); };
-    steps.compute_in_order = worker_.computes_in_order();
-    const auto skip = [this](int slot, const std::exception_ptr& error) {
-      return skip_frame(*slots_[static_cast<std::size_t>(slot)], error);
-    };
-    scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip);
+  bool may_read() override {
+    const std::scoped_lock lock(mutex_);
+    return !is_stopped_ && ahead_ < run().in_flight;
   }
 
-  void prepare(FrameSlot& slot) { worker_.prepare(slot); }
-  void compute(FrameSlot& slot) { worker_.compute(slot); }
-  void finish(FrameSlot& slot) { worker_.finish(slot); }
-
-  bool read(std::unique_ptr<FrameSlot>& slot) {
-    {
-      const std::scoped_lock lock(mutex_);
-      if (is_stopped_ || ahead_ >= run_.in_flight) {
-        return false;
-      }
-    }
-    if (!slot) {
-      slot = std::make_unique<FrameSlot>();
-    }
-    slot->times.clear();
-    slot->is_absent = false;
-    if (!feed_.next(slot->frame, slot->is_lead_in)) {
-      const std::scoped_lock lock(mutex_);
-      is_read_ = true;
-      return false;
-    }
-    if (!slot->is_lead_in) {
-      const std::scoped_lock lock(mutex_);
-      ++ahead_;
-    }
-    if (slot->frame != next_pair_) {
-      run_.pairs.skip_to(slot->frame);
-    }
-    next_pair_ = slot->frame + 1;
-    slot->is_absent = !run_.pairs.fetch(slot->pair);
-    return true;
+  void begin(FrameSlot& slot) override {
+    const std::scoped_lock lock(mutex_);
+    ahead_ += slot.is_lead_in ? 0 : 1;
   }
 
-  void write(std::unique_ptr<FrameSlot>& slot) {
+  void take(StepPhase phase, FrameSlot& slot) override {
+    scheduler::InterruptibleScope scope([this] { return is_stopped_.load(); });
+    FrameFlow::take(phase, slot);
+  }
+
+  void write(std::unique_ptr<FrameSlot>& slot) override {
     if (slot->is_absent) {
       drop(*slot);
       return;
@@ -185,12 +143,13 @@ class FrameIterator::Work {
     if (slot->is_lead_in) {
       return;
     }
-    frame.searched = worker_.searched_in(*slot);
-    frame.preview = worker_.preview_range_of_frame(*slot);
-    const MatchRequest request = worker_.request();
+    frame.searched = slot->searched;
+    frame.preview =
+        preview_range_of_frame(options_, run().shots, slot->frame, slot->pair.details.disparities);
+    const MatchRequest request = match_request(options_);
     frame.has_both_maps = request.left && request.right;
-    if (worker_.map_camera_of(*slot) != nullptr) {
-      frame.camera = worker_.point_camera(*slot);
+    if (cameras().map_camera_of(*slot) != nullptr) {
+      frame.camera = cameras().point_camera(*slot);
     }
     frame.slot = std::move(slot);
     {
@@ -206,42 +165,21 @@ class FrameIterator::Work {
     ahead_ -= slot.is_lead_in ? 0 : 1;
   }
 
-  bool skip_frame(const FrameSlot& slot, const std::exception_ptr& error) {
-    try {
-      std::rethrow_exception(error);
-    } catch (const UsageError&) {
-      throw;
-    } catch (const Error& bad) {
-      const std::string name = run_.pairs.describe(slot.frame);
-      if (!run_.keep_going) {
-        throw Error(fmt::format("frame {} ({}): {}", slot.frame, name, bad.what()));
-      }
-      drop(slot);
-      if (!slot.is_lead_in) {
-        const std::scoped_lock lock(mutex_);
-        skipped_.push_back({slot.frame, fmt::format("{}: {}", name, bad.what())});
-      }
-      return true;
-    }
+  void skip(FrameSlot& slot, const std::string& name, const std::string& problem) override {
+    drop(slot);
+    const std::scoped_lock lock(mutex_);
+    skipped_.push_back({slot.frame, fmt::format("{}: {}", name, problem)});
   }
 
-  const SequenceRun run_;
-  const SequenceLayout layout_;
-  Execution& execution_;
-  StepAccounts accounts_;
-  FrameWorker worker_;
-  FrameFeed feed_;
+  const SequenceOptions& options_;
   FrameFlicker flicker_;
-  std::vector<std::unique_ptr<FrameSlot>> slots_;
-  int next_pair_ = -1;  ///< the source may be anywhere at first
 
   std::mutex stopping_;  ///< held while the thread is joined
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   // Guarded by it.
   std::deque<ComputedFrame> ready_;
-  int ahead_ = 0;         ///< frames in work or ready, without those that others depend on
-  bool is_read_ = false;  ///< all frames
+  int ahead_ = 0;  ///< frames in work or ready, without those that others depend on
   bool has_ended_ = false;
   std::exception_ptr problem_;
   std::vector<FrameRemark> skipped_;
@@ -252,7 +190,8 @@ class FrameIterator::Work {
 
 FrameIterator::FrameIterator(const SequenceOptions& options, const SequenceRun& run,
                              const std::vector<int>& frames, Execution& execution)
-    : work_(std::make_unique<Work>(options, run, frames, execution)) {}
+    : work_(std::make_unique<Work>(options, SequenceLayout("-", options), run, frames, execution)) {
+}
 
 FrameIterator::~FrameIterator() = default;
 

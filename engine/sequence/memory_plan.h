@@ -5,7 +5,8 @@
 
 #include "engine/execution.h"
 #include "engine/sequence/options/sequence_options.h"
-#include "engine/sequence/steps/frame_worker.h"
+#include "engine/sequence/pairs/pair_shape.h"
+#include "engine/sequence/pairs/pair_source.h"
 #include "scheduler/strip_plan.h"
 
 namespace vantage {
@@ -19,19 +20,6 @@ struct MemoryPlan {
   std::size_t frame_bytes = 0;  ///< images, maps, views and files of a frame in flight
   std::size_t total_bytes = 0;  ///< peak of the whole process
   scheduler::ChainPlan chain;   ///< of one map
-};
-
-/// Properties of a run's pairs, from the first one.
-struct PairShape {
-  ImageExtent source;  ///< before rectification, which keeps the size
-  int channels = 1;
-  int bytes_per_value = 1;
-  bool is_video = false;                      ///< they come from videos
-  bool is_rectified_here = false;             ///< a calibration is applied
-  int cameras_kept = 1;                       ///< whose rectifications are in memory
-  int frames_kept = 0;                        ///< PairSource::frames_kept()
-  int pair_count = 1;                         ///< of the input
-  std::optional<RectifiedPair> cameras = {};  ///< if the pairs are calibrated
 };
 
 struct MemoryRequest {

@@ -1,7 +1,6 @@
 #include "engine/sequence/run_totals.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <string>
 
 namespace vantage {
@@ -51,9 +50,9 @@ void add_frame(SequenceReport& report, const FrameSlot& slot) {
 void add_processor_time(SequenceReport& report, const StepAccounts& accounts, double all_seconds,
                         double wall_seconds, int threads) {
   double other = all_seconds;
-  for (std::size_t step = 0; step < kRunStepNames.size(); ++step) {
-    report.processor.push_back({std::string(kRunStepNames[step]), accounts.seconds(step)});
-    other -= accounts.seconds(step);
+  for (const StepAccounts::Account& account : accounts.all()) {
+    report.processor.push_back({std::string(account.name), account.time.seconds()});
+    other -= account.time.seconds();
   }
   report.processor.push_back({"other", std::max(0.0, other)});
   report.share_busy = all_seconds / (wall_seconds * threads);

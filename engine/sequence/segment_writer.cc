@@ -12,6 +12,8 @@
 #include "engine/error.h"
 #include "engine/image/stereo_display.h"
 #include "engine/sequence/journal/pending_files.h"
+#include "engine/sequence/steps/frame_needs.h"
+#include "engine/sequence/steps/frame_pictures.h"
 
 namespace vantage {
 
@@ -57,13 +59,8 @@ Photograph at_least_two_a_side(Photograph picture) {
 }  // namespace
 
 SegmentWriter::SegmentWriter(const SequenceOptions& options, const SequenceLayout& layout,
-                             const FrameWorker& worker, ImageExtent frame_size,
-                             Execution& execution)
-    : options_(options),
-      layout_(layout),
-      worker_(worker),
-      frame_size_(frame_size),
-      execution_(execution) {
+                             ImageExtent frame_size, Execution& execution)
+    : options_(options), layout_(layout), frame_size_(frame_size), execution_(execution) {
   for (const OutputStream& output : layout.streams()) {
     if (output.as_video) {
       streams_.emplace_back().output = &output;
@@ -102,7 +99,7 @@ void SegmentWriter::add(const FrameSlot& slot) {
   // One task per video: an encoder uses one thread, so that its bytes are deterministic.
   execution_.executor().parallel_for(static_cast<int>(streams_.size()), [&](int index) {
     Stream& stream = streams_[static_cast<std::size_t>(index)];
-    worker_.copy_picture(slot, *stream.output, stream.last);
+    copy_picture(slot, *stream.output, options_.match.reference, stream.last);
     stream.last = at_least_two_a_side(std::move(stream.last));
     write(stream, stream.last, 1 + std::exchange(stream.leading_skipped, 0));
   });

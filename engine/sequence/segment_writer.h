@@ -6,7 +6,7 @@
 #include "engine/io/video/video_io.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/pairs/frame_range.h"
-#include "engine/sequence/steps/frame_worker.h"
+#include "engine/sequence/steps/frame_slot.h"
 
 namespace vantage {
 
@@ -19,7 +19,7 @@ class SegmentWriter {
  public:
   /// `frame_size`: of the pairs. All must outlive the writer.
   SegmentWriter(const SequenceOptions& options, const SequenceLayout& layout,
-                const FrameWorker& worker, ImageExtent frame_size, Execution& execution);
+                ImageExtent frame_size, Execution& execution);
   ~SegmentWriter();
 
   /// Starts the segment of `frames`; an unfinished segment is dropped.
@@ -39,7 +39,6 @@ class SegmentWriter {
 
   const SequenceOptions& options_;
   const SequenceLayout& layout_;
-  const FrameWorker& worker_;
   ImageExtent frame_size_;
   Execution& execution_;
   std::vector<Stream> streams_;

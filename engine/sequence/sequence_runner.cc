@@ -5,23 +5,19 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
-#include <exception>
 #include <iterator>
 #include <map>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/seconds_since.h"
-#include "engine/sequence/frame_feed.h"
 #include "engine/sequence/frame_flicker.h"
+#include "engine/sequence/frame_flow.h"
 #include "engine/sequence/journal/commit_queue.h"
 #include "engine/sequence/journal/delivered_frames.h"
 #include "engine/sequence/journal/leftovers.h"
 #include "engine/sequence/run_totals.h"
 #include "engine/sequence/segment_writer.h"
-#include "engine/sequence/steps/frame_memory.h"
-#include "engine/sequence/steps/frame_worker.h"
-#include "scheduler/frame_pipeline.h"
 
 namespace vantage {
 namespace {
@@ -52,105 +48,62 @@ class BadStreamFrame : public Error {
   using Error::Error;
 };
 
-/// One run: the ordered steps of a frame, and the totals.
-class Run {
+/// One run to a folder: the ordered steps of a frame, and the totals.
+class Run final : private FrameFlow {
  public:
   Run(const SequenceOptions& options, const SequenceRun& run, const SequenceLayout& layout,
       RunJournal& journal, std::vector<FrameRun> work, std::map<int, const FrameRecord*> stored,
       Execution& execution)
-      : options_(options),
-        run_(run),
-        layout_(layout),
-        execution_(execution),
-        worker_({options, layout, run.pairs, run.frame_size, run.rectifier, run.pair_cameras,
-                 run.cameras, run.map_camera, run.poses, run.shots, execution, accounts_}),
-        feed_(std::move(work)),
+      : FrameFlow(options, layout, run, std::move(work), true, execution),
+        options_(options),
+        threads_(execution.executor().thread_count()),
         stored_(std::move(stored)),
-        segments_(options, layout, worker_, run.frame_size.value_or(ImageExtent()), execution),
+        segments_(options, layout, run.frame_size.value_or(ImageExtent()), execution),
         flicker_(options, execution),
-        slots_(static_cast<std::size_t>(run.in_flight)),
         queue_(
             journal, [this](int frames, double cells) { tell_progress(frames, cells); },
-            accounts_.of(RunStep::kDeliver)) {
-    report_.in_flight = run.in_flight;
-  }
+            accounts().of(deliver_step())) {}
 
   SequenceReport work() {
     const Clock::time_point start = Clock::now();
     const double processor_at_start = processor_seconds();
-    const auto slot_of = [this](int slot) -> FrameSlot& {
-      return slots_[static_cast<std::size_t>(slot)];
-    };
-    scheduler::FrameSteps steps;
-    steps.read = [&](int slot) { return read(slot_of(slot)); };
-    steps.prepare = [&](int slot) { worker_.prepare(slot_of(slot)); };
-    steps.compute = [&](int slot) { worker_.compute(slot_of(slot)); };
-    steps.encode = [&](int slot) {
-      worker_.finish(slot_of(slot));
-      worker_.encode(slot_of(slot));
-    };
-    steps.write = [&](int slot) { write(slot_of(slot)); };
-    steps.compute_in_order = worker_.computes_in_order();
-    const auto skip = [&](int slot, const std::exception_ptr& error) {
-      return skip_frame(slot_of(slot), error);
-    };
     try {
-      const scheduler::FrameOutcome outcome =
-          scheduler::run_frames(execution_.executor(), run_.in_flight, steps, skip, run_.stop);
-      report_.interrupted = outcome.interrupted;
+      report_.interrupted = flow(run().stop).interrupted;
     } catch (const BadStreamFrame& bad) {
       report_.stream_problem = bad.what();
     }
-    if (run_.pairs.is_stream()) {
+    if (run().pairs.is_stream()) {
       finish_stream();
       // Ctrl-C stops the program that writes the stream as well: the stream ends before the stop is
       // noticed.
-      report_.interrupted = run_.stop != nullptr && run_.stop->load();
+      report_.interrupted = run().stop != nullptr && run().stop->load();
     }
     queue_.finish();
     // Not counted: frames that exist only in the abandoned videos of an unfinished chunk.
     report_.frames -= frames_of_segment_;
     report_.videos_from = segment_begin_;
-    report_.compute_seconds = worker_.compute_seconds();
-    for (const FrameSlot& slot : slots_) {
-      report_.memory.add("frames in flight", held_bytes(slot));
-    }
-    worker_.add_memory_use(report_.memory);
-    add_processor_time(report_, accounts_, processor_seconds() - processor_at_start,
-                       seconds_since(start), execution_.executor().thread_count());
+    add_totals(report_);
+    add_processor_time(report_, accounts(), processor_seconds() - processor_at_start,
+                       seconds_since(start), threads_);
     return std::move(report_);
   }
 
  private:
-  bool read(FrameSlot& slot) {
-    const Clock::time_point start = Clock::now();
-    const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kRead));
-    slot.times.clear();
-    if (!feed_.next(slot.frame, slot.is_lead_in)) {
-      return false;
-    }
-    if (slot.frame != next_pair_) {
-      run_.pairs.skip_to(slot.frame);
-    }
-    next_pair_ = slot.frame + 1;
+  void begin(FrameSlot& slot) override {
     const auto known = stored_.find(slot.frame);
     slot.stored = known == stored_.end() ? nullptr : known->second;
-    // Some containers promise a few frames more than they have; a truncated file throws.
-    slot.is_absent = !run_.pairs.fetch(slot.pair);
-    if (slot.is_absent && run_.pairs.is_stream()) {
-      return false;
-    }
-    slot.times.push_back({"read", seconds_since(start)});
-    return true;
   }
 
-  void write(FrameSlot& slot) {
+  void write(std::unique_ptr<FrameSlot>& slot) override { write_frame(*slot); }
+
+  void write_frame(FrameSlot& slot) {
     if (slot.is_absent) {
       note_absence(slot);
       return;
     }
     const Clock::time_point start = Clock::now();
-    const scheduler::ProcessorCharge charge(accounts_.of(RunStep::kWrite));
+    const StepEntry step = write_step();
+    const scheduler::ProcessorCharge charge(accounts().of(step));
     FrameRecord record{
         .frame = slot.frame, .name = slot.pair.details.name, .files = std::move(slot.file_records)};
     record.comfort = slot.comfort;
@@ -159,15 +112,15 @@ class Run {
     if (slot.is_lead_in) {
       return;
     }
-    if (run_.pairs.is_stream()) {
+    if (run().pairs.is_stream()) {
       cuts_.add(slot.thumbnail);
     }
     note_oddities(slot, record);
-    if (layout_.has_videos()) {
+    if (layout().has_videos()) {
       segment_of(slot.frame);
       segments_.add(slot);
     }
-    slot.times.push_back({"write", seconds_since(start)});
+    slot.times.push_back({step.name, seconds_since(start)});
     add_frame(report_, slot);
     if (slot.stored != nullptr) {
       deliver(slot.frame, {}, std::nullopt, slot.match.cells);
@@ -181,7 +134,7 @@ class Run {
     if (slot.is_lead_in) {
       return;
     }
-    if (layout_.has_videos()) {
+    if (layout().has_videos()) {
       segment_of(slot.frame);
     }
     FrameRecord record{.frame = slot.frame, .absent = true};
@@ -213,49 +166,35 @@ class Run {
     }
   }
 
-  bool skip_frame(FrameSlot& slot, const std::exception_ptr& error) {
-    slot.files.discard();
-    std::string problem;
-    try {
-      std::rethrow_exception(error);
-    } catch (const DeliveryError&) {
-      throw;
-    } catch (const OutputError& output) {
-      throw OutputError(fmt::format("frame {}: {}", slot.frame, output.what()));
-    } catch (const UsageError&) {
-      throw;
-    } catch (const Error& bad_frame) {
-      problem = bad_frame.what();
+  /// Problems of a stream name their frame.
+  static std::string with_name(const std::string& name, const std::string& problem) {
+    return problem.starts_with(name) ? problem : fmt::format("{}: {}", name, problem);
+  }
+
+  [[noreturn]] void give_up(const FrameSlot& slot, const std::string& name,
+                            const std::string& problem) override {
+    if (run().pairs.is_stream()) {
+      throw BadStreamFrame(with_name(name, problem));
     }
-    const std::string name = run_.pairs.describe(slot.frame);
-    // Problems of a stream name their frame.
-    const std::string named =
-        problem.starts_with(name) ? problem : fmt::format("{}: {}", name, problem);
-    if (!run_.keep_going) {
-      if (run_.pairs.is_stream()) {
-        throw BadStreamFrame(named);
-      }
-      throw Error(fmt::format("frame {} ({}): {}", slot.frame, name, problem));
-    }
-    if (slot.is_lead_in) {
-      return true;  // recorded when it is delivered
-    }
-    if (run_.pairs.is_stream()) {
+    FrameFlow::give_up(slot, name, problem);
+  }
+
+  void skip(FrameSlot& slot, const std::string& name, const std::string& problem) override {
+    if (run().pairs.is_stream()) {
       cuts_.add(std::nullopt);
     }
-    report_.skipped.push_back({slot.frame, named});
-    if (layout_.has_videos()) {
+    report_.skipped.push_back({slot.frame, with_name(name, problem)});
+    if (layout().has_videos()) {
       segment_of(slot.frame);
       segments_.add_skipped();
     }
-    deliver(slot.frame, {},
-            FrameRecord{.frame = slot.frame, .skipped = true, .problem = std::move(problem)}, 0);
-    return true;
+    deliver(slot.frame, {}, FrameRecord{.frame = slot.frame, .skipped = true, .problem = problem},
+            0);
   }
 
   /// Starts the segment of the frame if it is the first one there.
   void segment_of(int frame) {
-    const FrameRange chunk = run_.selection.chunk_of(frame);
+    const FrameRange chunk = run().selection.chunk_of(frame);
     if (frame == chunk.first) {
       segments_.begin(chunk);
       segment_records_.clear();
@@ -271,15 +210,15 @@ class Run {
     delivery.frames = 1;
     delivery.cells = cells;
     delivery.frame = frame;
-    if (record && (!layout_.has_videos() || !record->files.empty())) {
+    if (record && (!layout().has_videos() || !record->files.empty())) {
       delivery.records.emplace_back(*std::move(record));
     } else if (record) {
       frames_of_segment_ += record->skipped || record->absent ? 0 : 1;
       segment_records_.emplace_back(*std::move(record));
     }
     last_delivered_ = frame;
-    const FrameRange chunk = run_.selection.chunk_of(frame);
-    if (layout_.has_videos() && frame + 1 == chunk.end) {
+    const FrameRange chunk = run().selection.chunk_of(frame);
+    if (layout().has_videos() && frame + 1 == chunk.end) {
       end_segment(chunk, delivery);
     }
     queue_.push(std::move(delivery));
@@ -289,9 +228,9 @@ class Run {
   void end_segment(FrameRange frames, Delivery& delivery) {
     delivery.videos = segments_.end(frames);
     if (!delivery.videos.empty()) {
-      delivery.folder = layout_.folder();
+      delivery.folder = layout().folder();
       delivery.segment = SegmentRecord{frames};
-      for (std::string& name : layout_.segment_names(frames)) {
+      for (std::string& name : layout().segment_names(frames)) {
         delivery.segment->files.push_back({.name = std::move(name)});
       }
     }
@@ -309,31 +248,16 @@ class Run {
       end_segment({*segment_begin_, last_delivered_ + 1}, delivery);
       queue_.push(std::move(delivery));
     }
-    const FrameRange frames{run_.selection.own().first, last_delivered_ + 1};
+    const FrameRange frames{run().selection.own().first, last_delivered_ + 1};
     if (options_.needs_shots() && !frames.empty()) {
       report_.shots = shots_at(cuts_, frames, options_);
     }
   }
 
-  void tell_progress(int frames, double cells) {
-    progress_.frames_done += frames;
-    progress_.frames_total = feed_.frames_total() < kUnknownFrames ? feed_.frames_total() : 0;
-    progress_.cells += cells;
-    if (run_.on_progress) {
-      run_.on_progress(progress_);
-    }
-  }
-
   const SequenceOptions& options_;
-  const SequenceRun& run_;
-  const SequenceLayout& layout_;
-  Execution& execution_;
-  StepAccounts accounts_;
-  FrameWorker worker_;
-  FrameFeed feed_;  // used only by the reading step while frames are in flight
+  int threads_;
   std::map<int, const FrameRecord*> stored_;
-  int next_pair_ = -1;  // as feed_; the source may be anywhere at first
-  // The following members, up to the slots, are used only by the writing step.
+  // The following members, up to the queue, are used only by the writing step.
   SegmentWriter segments_;
   std::vector<JournalRecord> segment_records_;
   int frames_of_segment_ = 0;         // counted in the report although the segment is unfinished
@@ -344,9 +268,7 @@ class Run {
   int last_frame_ = -2;
   std::array<std::uint64_t, 2> last_content_ = {};
   SequenceReport report_;
-  std::vector<FrameSlot> slots_;
-  SequenceProgress progress_;  // used only by the queue's thread
-  CommitQueue queue_;          // last: its thread uses all other members
+  CommitQueue queue_;  // last: its thread tells progress
 };
 
 }  // namespace

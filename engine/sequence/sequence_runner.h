@@ -79,8 +79,8 @@ struct SequenceReport {
   /// Time during which at least one frame was being matched or rendered: no reading or writing.
   double compute_seconds = 0;
   std::vector<SequenceStage> stages;  ///< in order of first appearance
-  /// Processor time of this process by RunStep, then "other": codecs with threads of their own,
-  /// waiting threads that look for work.
+  /// Processor time of this process by the accounts of its steps, then "other": codecs with threads
+  /// of their own, waiting threads that look for work.
   std::vector<SequenceStage> processor;
   double share_busy = 0;      ///< of the time of all threads of the execution, processor time
   scheduler::ChainPlan plan;  ///< of the last frame

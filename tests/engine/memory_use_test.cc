@@ -3,7 +3,7 @@
 
 #include "engine/matching/search/coarse_to_fine/level_plan.h"
 #include "engine/matching/stereo_matcher.h"
-#include "engine/sequence/steps/frame_memory.h"
+#include "engine/sequence/steps/frame_slot.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 

@@ -18,7 +18,7 @@
 
 namespace vantage {
 
-/// A delivery failed; names its frame.
+/// What is ready cannot be delivered; the message says all.
 class DeliveryError : public OutputError {
  public:
   using OutputError::OutputError;

@@ -16,7 +16,7 @@
 #include "engine/matching/options/match_values.h"
 #include "engine/matching/search/match_inputs.h"
 #include "engine/quoted_text.h"
-#include "engine/sequence/sequence_values.h"
+#include "engine/sequence/options/sequence_values.h"
 
 namespace vantage {
 namespace {

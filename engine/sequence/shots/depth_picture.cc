@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/sequence/shots/preview_range.h"
+
 namespace vantage {
 namespace {
 
@@ -32,6 +34,14 @@ PreviewRange depth_range_of(const DepthVideoScale& scale, DisparityRange film,
       of_shot ? shots->shot_of(frame).search.value_or(film) : searched_in_all(film, shots);
   return {static_cast<float>(range.min),
           static_cast<float>(range.max > range.min ? range.max : range.min + 1)};
+}
+
+PreviewRange preview_range_of_frame(const SequenceOptions& options, const ShotTable* shots,
+                                    int frame, const std::optional<DisparityRange>& of_pair) {
+  if (options.preview_range_per_shot) {
+    return shots->shot_of(frame).preview_range;
+  }
+  return preview_range_of(of_pair.value_or(searched_in_all(options.match.disparities, shots)));
 }
 
 void paint_depth(ImageView<const float> map_px, PreviewRange range, Image<std::uint16_t>& picture) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "engine/comfort/frame_comfort.h"
+#include "engine/image/disparity_range.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/range_check.h"
 #include "engine/matching/selection/cyclopean_map.h"
@@ -42,6 +44,8 @@ struct FrameSlot {
   const Photograph* right = nullptr;
   std::array<std::uint64_t, 2> content = {};  ///< content_hash() of the pair
   std::optional<Thumbnail> thumbnail;         ///< of the left frame of a stream, to find shots
+  bool maps_are_read = false;                 ///< from the files of `stored`, instead of matching
+  DisparityRange searched;                    ///< the disparities searched for `maps`
   DisparityMaps maps;
   /// The maps on the grids of `pair`, if views use its colours (PhotographGrid).
   std::array<Image<float>, 2> photograph_maps;
@@ -66,6 +70,17 @@ struct FrameSlot {
   PendingFiles files;
   std::vector<FileRecord> file_records;  ///< of `files`
   std::vector<StageTime> times;          ///< of all steps except matching
+
+  /// Forgets the frame before; buffers are kept.
+  void begin_frame();
+  /// Null unless the view is at a camera's position.
+  [[nodiscard]] const Photograph* photograph_at(double view_x) const {
+    return view_x == 0 ? left : view_x == 1 ? right : nullptr;
+  }
 };
+
+/// Bytes of a frame in flight, by the steps that fill it. Excludes data that its source has fetched
+/// but not yet decoded.
+std::size_t held_bytes(const FrameSlot& slot);
 
 }  // namespace vantage

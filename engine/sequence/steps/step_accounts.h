@@ -1,42 +1,43 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
+#include <algorithm>
+#include <list>
 #include <string_view>
+#include <utility>
 
+#include "engine/sequence/steps/step_list.h"
 #include "scheduler/processor_account.h"
 
 namespace vantage {
 
-/// Steps of a run whose processor time is told apart.
-enum class RunStep : std::uint8_t {
-  kRead,    ///< files, and decoding videos unless the codec has threads of its own
-  kDecode,  ///< images, colours of video frames, splitting packed ones
-  kRectify,
-  kMatch,
-  kViews,
-  kPictures,  ///< previews, stereo pictures, depth
-  kComfort,
-  kEncode,  ///< files of the frame
-  kWrite,   ///< videos
-  kDeliver  ///< flushing, naming, journal
-};
-
-inline constexpr std::array<std::string_view, 10> kRunStepNames = {
-    "read",     "decode",  "rectify", "match", "views",
-    "pictures", "comfort", "encode",  "write", "deliver"};
-
-/// Processor time of a run by step, in the order of kRunStepNames.
+/// Processor time of a run by the accounts of its steps.
 class StepAccounts {
  public:
-  [[nodiscard]] scheduler::ProcessorAccount* of(RunStep step) {
-    return &accounts_[static_cast<std::size_t>(step)];
+  StepAccounts() {
+    for (const StepEntry& step : frame_steps()) {
+      if (find(step.account) == accounts_.end()) {
+        accounts_.emplace_back().name = step.account;
+      }
+    }
   }
-  [[nodiscard]] double seconds(std::size_t step) const { return accounts_[step].seconds(); }
+
+  [[nodiscard]] scheduler::ProcessorAccount* of(const StepEntry& step) {
+    return &find(step.account)->time;
+  }
+
+  struct Account {
+    std::string_view name;
+    scheduler::ProcessorAccount time;
+  };
+  /// In the order of the steps.
+  [[nodiscard]] const std::list<Account>& all() const { return accounts_; }
 
  private:
-  std::array<scheduler::ProcessorAccount, kRunStepNames.size()> accounts_;
+  [[nodiscard]] std::list<Account>::iterator find(std::string_view name) {
+    return std::ranges::find(accounts_, name, &Account::name);
+  }
+
+  std::list<Account> accounts_;
 };
 
 }  // namespace vantage
