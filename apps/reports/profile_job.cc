@@ -97,7 +97,6 @@ Profile make_profile(const ProfiledCommand& command, const std::vector<Contestan
       static_cast<std::uint64_t>(profile.thread_counts.back().peak_memory_bytes.max);
   profile.memory = median.memory;
   std::ranges::stable_sort(profile.memory, std::ranges::greater{}, &MemoryOwner::bytes);
-  profile.hardware = {summarise_counts(max.runs), max.counters_absence};
   profile.timeline = max.timeline;
   profile.timeline_s = max.timeline_s;
   return profile;

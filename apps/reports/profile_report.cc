@@ -167,18 +167,6 @@ std::string memory(const Profile& profile) {
               : table.text());
 }
 
-std::string counters(const HardwareCounts& hardware, int threads) {
-  TextTable table(fmt::format("Counters of a run on {}", threads_text(threads)), {"", "count"});
-  for (const auto& [name, sample] : hardware.counts) {
-    table.add({name, sample_text(sample, "")});
-  }
-  std::string text = table.empty() ? "" : "\n" + table.text();
-  if (!hardware.absence.empty()) {
-    text += (table.empty() ? "\n" : "") + wrapped(hardware.absence);
-  }
-  return text;
-}
-
 std::string ceilings(const Profile& profile) {
   TextTable table("What the machine can do", {"", "GFLOP/s", "level 2, GB/s", "triad, GB/s"});
   const auto add = [&](const std::string& name, double gflops, double level2, double memory_rate) {
@@ -204,8 +192,7 @@ std::string describe(const Profile& profile) {
                      profile.processor, profile.isa, profile.version, max.runs,
                      max.runs == 1 ? "" : "s") +
          advice(profile) + findings(profile) + scaling(profile) + stages(profile, max) +
-         parts(max) + workers(max) + ceilings(profile) + memory(profile) +
-         counters(profile.hardware, max.threads);
+         parts(max) + workers(max) + ceilings(profile) + memory(profile);
 }
 
 }  // namespace vantage::apps

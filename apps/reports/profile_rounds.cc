@@ -12,7 +12,6 @@
 #include "engine/io/files/json_text.h"
 #include "engine/profiling/timeline.h"
 #include "engine/seconds_since.h"
-#include "scheduler/hardware_counters.h"
 
 namespace vantage::apps {
 namespace {
@@ -107,10 +106,8 @@ class RunFiles {
 bool run_once(ProfiledCommand& command, const RunFiles& files, const std::string& trace,
               Contestant& contestant, const std::atomic<bool>& stop) {
   write_text_file(files.job(), command.job_file(contestant.threads, files.report(), trace));
-  const scheduler::HardwareCounters counters;
   const ProgramResult result =
       run_program({path_of_this_program(), command.name(), "--config", files.job()}, &stop);
-  const scheduler::EventCounts counts = counters.read();
   command.clear_results();
   if (stop.load()) {
     return false;
@@ -125,14 +122,6 @@ bool run_once(ProfiledCommand& command, const RunFiles& files, const std::string
   } catch (const SettingValue::exception& error) {
     throw Error(
         fmt::format("{}: lacks what a profile is made of ({})", files.report(), error.what()));
-  }
-  contestant.counters_absence = counts.absence;
-  if (counts.user_mode_only) {
-    contestant.counters_absence += std::string(counts.absence.empty() ? "" : " ") +
-                                   "The share of the operating system in the work is not counted.";
-  }
-  for (const scheduler::EventCounts::Count& count : counts.counts) {
-    run.hardware_counts[std::string(count.name)] = count.events;
   }
   contestant.runs.push_back(std::move(run));
   return true;

@@ -19,7 +19,6 @@ struct Contestant {
   std::vector<RunMeasurement> runs = {};
   std::string version = {};
   std::string isa = {};
-  std::string counters_absence = {};  ///< why counts of the processor are missing
   std::vector<TimelineRow> timeline = {};
   double timeline_s = 0;
 };

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -103,12 +102,6 @@ struct MemoryOwner {
   std::uint64_t bytes = 0;
 };
 
-/// Processor counters over one run, all threads. Empty where the system provides none.
-struct HardwareCounts {
-  std::map<std::string, ProfileSample> counts;  ///< "instructions", "cycles", …
-  std::string absence;                          ///< why some or all are missing; empty: all present
-};
-
 /// Result of `vantage profile`.
 struct Profile {
   std::string version;
@@ -130,7 +123,6 @@ struct Profile {
   std::vector<TimelineRow> timeline;  ///< largest thread count, run with the median wall time
   double timeline_s = 0;              ///< its wall time
   std::vector<MemoryOwner> memory;    ///< largest first
-  HardwareCounts hardware;            ///< at the largest thread count
 };
 
 }  // namespace vantage

@@ -79,14 +79,4 @@ double pool_time_s(const ThreadCountProfile& count) {
   return result;
 }
 
-std::optional<double> instructions_per_cycle(const HardwareCounts& hardware) {
-  const auto instructions = hardware.counts.find("instructions");
-  const auto cycles = hardware.counts.find("cycles");
-  if (instructions == hardware.counts.end() || cycles == hardware.counts.end() ||
-      !(cycles->second.median > 0)) {
-    return std::nullopt;
-  }
-  return instructions->second.median / cycles->second.median;
-}
-
 }  // namespace vantage

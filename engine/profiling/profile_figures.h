@@ -40,7 +40,4 @@ double pool_work_s(const ThreadCountProfile& count);
 /// Their work and waits.
 double pool_time_s(const ThreadCountProfile& count);
 
-/// Empty if instructions or cycles were not counted.
-std::optional<double> instructions_per_cycle(const HardwareCounts& hardware);
-
 }  // namespace vantage

@@ -103,10 +103,6 @@ static void to_json(ProfileJson& json, const MemoryOwner& owner) {
   json = {{"name", owner.name}, {"bytes", owner.bytes}};
 }
 
-static void to_json(ProfileJson& json, const HardwareCounts& hardware) {
-  json = {{"counts", hardware.counts}, {"absence", hardware.absence}};
-}
-
 static void to_json(ProfileJson& json, const Profile& profile) {
   constexpr int kSchema = 1;
   json = {{"profile_schema", kSchema},
@@ -122,7 +118,6 @@ static void to_json(ProfileJson& json, const Profile& profile) {
           {"speed_ups", profile.speed_ups},
           {"serial_fraction", value_or_null(profile.serial_fraction)},
           {"memory", profile.memory},
-          {"hardware", profile.hardware},
           {"timeline_s", profile.timeline_s},
           {"timeline", profile.timeline}};
 }
@@ -164,8 +159,6 @@ void add_figures(const Profile& profile, ProfileJson& document) {
   for (std::size_t i = 0; i < profile.thread_counts.size(); ++i) {
     add_figures(profile, profile.thread_counts[i], document["thread_counts"][i]);
   }
-  document["hardware"]["instructions_per_cycle"] =
-      value_or_null(instructions_per_cycle(profile.hardware));
   document["advice"] = profile.advice;
   document["findings"] = ProfileJson::array();
   for (const ProfileFinding& finding : profile_findings(profile)) {

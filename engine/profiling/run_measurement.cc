@@ -150,20 +150,4 @@ ThreadCountProfile summarise_runs(int threads, Runs runs) {
   return profile;
 }
 
-std::map<std::string, ProfileSample> summarise_counts(Runs runs) {
-  std::map<std::string, ProfileSample> counts;
-  for (const auto& [name, of_first] : runs.front().hardware_counts) {
-    std::vector<double> values;
-    for (const RunMeasurement& run : runs) {
-      if (const auto found = run.hardware_counts.find(name); found != run.hardware_counts.end()) {
-        values.push_back(found->second);
-      }
-    }
-    if (values.size() == runs.size()) {
-      counts[name] = sample_of(std::move(values));
-    }
-  }
-  return counts;
-}
-
 }  // namespace vantage

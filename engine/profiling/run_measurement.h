@@ -40,7 +40,6 @@ struct RunMeasurement {
   WaitingCauses waiting_for;
   std::uint64_t peak_memory_bytes = 0;
   std::vector<MemoryOwner> memory;
-  std::map<std::string, double> hardware_counts;
 };
 
 /// Index of the run with the median wall time; of an even number the faster of the two in the
@@ -56,8 +55,5 @@ std::map<std::string, double> median_steps(std::span<const RunMeasurement> runs)
 
 /// Maximum ÷ mean work of a thread of the pool; 1 if empty.
 double imbalance_of(std::span<const ThreadProfile> workers);
-
-/// Medians and ranges of the processor counters that all runs have.
-std::map<std::string, ProfileSample> summarise_counts(std::span<const RunMeasurement> runs);
 
 }  // namespace vantage

@@ -81,8 +81,6 @@ MADE_UP = {
                    "serial_fraction": 0.103}],
     "serial_fraction": 0.0901,
     "memory": [{"name": "rings", "bytes": 21_200_000}, {"name": "maps", "bytes": 12_900_000}],
-    "hardware": {"counts": {"cycles": sample(3.4e11), "instructions": sample(7.1e11)},
-                 "absence": "not counted: branches", "instructions_per_cycle": 2.088},
     "timeline_s": 0.32,
     "timeline": [
         {"thread": "deliveries", "is_in_pool": False, "spans": [
@@ -96,8 +94,7 @@ MADE_UP = {
 def empty_profile():
     return {**MADE_UP, **{key: [] for key in ("ceilings", "thread_counts", "speed_ups", "memory",
                                               "timeline", "advice", "findings")},
-            "serial_fraction": None, "peak_memory_bytes": 0, "timeline_s": 0.0,
-            "hardware": {"counts": {}, "absence": "", "instructions_per_cycle": None}}
+            "serial_fraction": None, "peak_memory_bytes": 0, "timeline_s": 0.0}
 
 
 def without_figures(value):
@@ -113,7 +110,7 @@ def keys_of(value, path=""):
     """Where there are keys in a JSON value; of a list, those of its first member."""
     if isinstance(value, list):
         return keys_of(value[0], path + "[]") if value else set()
-    if not isinstance(value, dict) or path == ".hardware.counts":
+    if not isinstance(value, dict):
         return {path}
     return set().union(*(keys_of(member, f"{path}.{key}") for key, member in value.items()))
 
@@ -212,9 +209,7 @@ class ProfilePageTest(unittest.TestCase):
                 ["1", "5", "580 (570–590) ms", "250 ms", "54.9 M", "88 %", "1.00×", "100 %", "–"],
                 ["2", "5", "320 (310–330) ms", "250 ms", "54.9 M", "88 %", "1.81 (1.78–1.84)×",
                  "91 %", "10 %"]],
-            "Memory": [["rings", "21.2 MB", "26 %"], ["maps", "12.9 MB", "16 %"]],
-            "Hardware counters": [["cycles", "340 G"], ["instructions", "710 G"],
-                                  ["instructions per cycle", "2.09"]]})
+            "Memory": [["rings", "21.2 MB", "26 %"], ["maps", "12.9 MB", "16 %"]]})
         self.assertEqual(sections["Timeline"]["labels"],
                          ["", "time, ms", "main", "21", "deliveries", "20"])
         self.assertEqual(sections["Roofline"]["labels"][2:],
@@ -231,8 +226,7 @@ class ProfilePageTest(unittest.TestCase):
                 ("Use of threads", "texts",
                  "The busiest thread of the pool works 1.04 (1.03–1.05) times the mean."),
                 ("Speed-up with threads", "hints", "2 threads: 1.81 (1.78–1.84)×"),
-                ("Memory", "texts", "At most 81.7 MB were resident."),
-                ("Hardware counters", "texts", "not counted: branches")]:
+                ("Memory", "texts", "At most 81.7 MB were resident.")]:
             self.assertIn(text, sections[title][kind])
 
     def test_says_what_is_missing(self):
@@ -245,7 +239,7 @@ class ProfilePageTest(unittest.TestCase):
         for profile, texts in [
                 (empty_profile(), ["No run was measured.", "not enough to say what holds it back",
                                    "No stage of matching", "no timeline",
-                                   "memory was used is not known", "No counters were read."]),
+                                   "memory was used is not known"]),
                 (no_ceilings, ["ceilings were not measured", "there is no speed-up"]),
                 ({**MADE_UP, "thread_counts": [untraced]},
                  ["time went is not known", "thread worked is not known",

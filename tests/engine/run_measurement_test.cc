@@ -75,13 +75,4 @@ TEST(ImbalanceOf, IsOneWhereAllDoTheSameOrNothing) {
   EXPECT_EQ(imbalance_of(one_works), 2);
 }
 
-TEST(SummariseCounts, KeepsWhatAllRunsHave) {
-  std::vector<RunMeasurement> runs(2);
-  runs[0].hardware_counts = {{"cycles", 10}, {"page faults", 3}};
-  runs[1].hardware_counts = {{"cycles", 20}};
-  const auto counts = summarise_counts(runs);
-  ASSERT_EQ(counts.size(), 1U);
-  EXPECT_EQ(counts.at("cycles").median, 15);
-}
-
 }  // namespace vantage::run_measurement_test

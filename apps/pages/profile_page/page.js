@@ -266,17 +266,6 @@
                       "reach their peaks at the same time.")] : [])];
   }
 
-  function counters() {
-    const {counts, absence, instructions_per_cycle} = profile.hardware;
-    const rows = Object.entries(counts).map(([name, sample]) => [name, sampleText(sample, "")]);
-    if (instructions_per_cycle !== null) {
-      rows.push(["instructions per cycle", numberText(instructions_per_cycle)]);
-    }
-    const missing = absence || (rows.length > 0 ? "" : "No counters were read.");
-    return [...(rows.length > 0 ? [table([words("counter"), "per run, all threads"], rows)] : []),
-            ...(missing ? [note(missing)] : [])];
-  }
-
   fillHeader();
   document.getElementById("main").append(
     keyFigures(),
@@ -286,5 +275,5 @@
             profile.findings.length > 0 ? sentences(profile.findings)
               : note("The figures are not enough to say what holds it back.")),
     ...stageSections(), ...threadSections(), section("Speed-up with threads", ...scaling()),
-    sideBySide([section("Memory", ...memory())], [section("Hardware counters", ...counters())]));
+    section("Memory", ...memory()));
 })();
