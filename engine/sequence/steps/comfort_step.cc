@@ -4,30 +4,24 @@
 namespace vantage {
 namespace {
 
-/// Measures how comfortable a pair is to watch. The record of a stored frame has it.
-class ComfortStep final : public RunStep {
- public:
-  explicit ComfortStep(const FrameTools& tools)
-      : is_saved_(tools.options.saves(SequenceOutput::kComfort)),
-        reference_(tools.options.match.reference) {}
+/// The record of a stored frame has it.
+bool needs_comfort(const FrameTools& tools, const FrameSlot& slot) {
+  return tools.options.saves(SequenceOutput::kComfort) && slot.stored == nullptr &&
+         !slot.is_lead_in;
+}
 
-  [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
-    return is_saved_ && slot.stored == nullptr && !slot.is_lead_in;
-  }
-
-  void run(FrameSlot& slot) override {
-    slot.comfort = measure_comfort(*slot.left, *slot.right, slot.maps.of(reference_), reference_);
-  }
-
- private:
-  bool is_saved_;
-  Side reference_;
-};
+/// Measures how comfortable a pair is to watch.
+void measure_comfort_of(const FrameTools& tools, FrameSlot& slot) {
+  const Side reference = tools.options.match.reference;
+  slot.comfort = measure_comfort(*slot.left, *slot.right, slot.maps.of(reference), reference);
+}
 
 }  // namespace
 
 StepEntry comfort_step() {
-  return {.name = "comfort", .account = "comfort", .make = make_step<ComfortStep>};
+  return {.name = "comfort",
+          .account = "comfort",
+          .make = make_step<needs_comfort, measure_comfort_of>};
 }
 
 }  // namespace vantage

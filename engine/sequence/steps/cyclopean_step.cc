@@ -3,23 +3,13 @@
 namespace vantage {
 namespace {
 
-class CyclopeanStep final : public RunStep {
- public:
-  explicit CyclopeanStep(const FrameTools& tools)
-      : is_saved_(tools.options.saves_cyclopean()), execution_(tools.execution) {}
+bool needs_cyclopean_map(const FrameTools& tools, const FrameSlot& slot) {
+  return tools.options.saves_cyclopean() && slot.shot != nullptr && !slot.is_lead_in;
+}
 
-  [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
-    return is_saved_ && slot.shot != nullptr && !slot.is_lead_in;
-  }
-
-  void run(FrameSlot& slot) override {
-    make_cyclopean_map(slot.maps.left, execution_, slot.cyclopean);
-  }
-
- private:
-  bool is_saved_;
-  Execution& execution_;
-};
+void make_map_of_middle(const FrameTools& tools, FrameSlot& slot) {
+  make_cyclopean_map(slot.maps.left, tools.execution, slot.cyclopean);
+}
 
 StepBytes cyclopean_bytes(const SequenceOptions& options, const PairShape& shape) {
   return {.of_frame = options.saves_cyclopean() ? shape.pixels() * (sizeof(float) + 1) : 0};
@@ -34,7 +24,7 @@ std::size_t held_of_cyclopean(const FrameSlot& slot) {
 StepEntry cyclopean_step() {
   return {.name = "cyclopean map",
           .account = "match",
-          .make = make_step<CyclopeanStep>,
+          .make = make_step<needs_cyclopean_map, make_map_of_middle>,
           .planned_bytes = cyclopean_bytes,
           .held_bytes = held_of_cyclopean};
 }

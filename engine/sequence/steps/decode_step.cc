@@ -15,46 +15,31 @@ void require_size(const Photograph& photograph, std::string_view side, ImageExte
   }
 }
 
+bool is_always_needed(const FrameTools& /*tools*/, const FrameSlot& /*slot*/) { return true; }
+
 /// Makes the images of a frame, and finds its cameras.
-class DecodeStep final : public RunStep {
- public:
-  explicit DecodeStep(const FrameTools& tools)
-      : pairs_(tools.pairs),
-        frame_size_(tools.frame_size),
-        cameras_of_pairs_(tools.cameras.of_pairs),
-        needs_thumbnails_(tools.pairs.is_stream() && tools.options.needs_shots()) {}
-
-  [[nodiscard]] bool is_needed(const FrameSlot&) const override { return true; }
-
-  void run(FrameSlot& slot) override {
-    FramePair& pair = slot.pair;
-    pairs_.decode(pair);
-    slot.content = {content_hash(pair.left), content_hash(pair.right)};
-    if (needs_thumbnails_) {
-      slot.thumbnail = make_thumbnail(pair.left);
-    }
-    if (frame_size_) {
-      require_size(pair.left, "left", *frame_size_);
-      require_size(pair.right, "right", *frame_size_);
-      for (std::size_t k = 0; k < pair.more.size(); ++k) {
-        require_size(pair.more[k], fmt::format("camera {}'s", k + 3), *frame_size_);
-      }
-    }
-    slot.left = &pair.left;
-    slot.right = &pair.right;
-    if (!pair.details.calibration.empty()) {
-      const ImageExtent size{pair.left.width(), pair.left.height()};
-      require_size(pair.right, "right", size);
-      slot.cameras = cameras_of_pairs_->of(pair.details, size);
+void decode(const FrameTools& tools, FrameSlot& slot) {
+  FramePair& pair = slot.pair;
+  tools.pairs.decode(pair);
+  slot.content = {content_hash(pair.left), content_hash(pair.right)};
+  if (tools.pairs.is_stream() && tools.options.needs_shots()) {
+    slot.thumbnail = make_thumbnail(pair.left);
+  }
+  if (tools.frame_size) {
+    require_size(pair.left, "left", *tools.frame_size);
+    require_size(pair.right, "right", *tools.frame_size);
+    for (std::size_t k = 0; k < pair.more.size(); ++k) {
+      require_size(pair.more[k], fmt::format("camera {}'s", k + 3), *tools.frame_size);
     }
   }
-
- private:
-  const PairSource& pairs_;
-  std::optional<ImageExtent> frame_size_;
-  PairCameras* cameras_of_pairs_;
-  bool needs_thumbnails_;
-};
+  slot.left = &pair.left;
+  slot.right = &pair.right;
+  if (!pair.details.calibration.empty()) {
+    const ImageExtent size{pair.left.width(), pair.left.height()};
+    require_size(pair.right, "right", size);
+    slot.cameras = tools.cameras.of_pairs->of(pair.details, size);
+  }
+}
 
 StepBytes decode_bytes(const SequenceOptions& options, const PairShape& shape) {
   const std::size_t more = options.baselines.empty() ? 0 : options.baselines.size() - 1;
@@ -83,7 +68,7 @@ StepEntry decode_step() {
           .account = "decode",
           .kind = WorkKind::kReading,
           .phase = StepPhase::kPrepare,
-          .make = make_step<DecodeStep>,
+          .make = make_step<is_always_needed, decode>,
           .planned_bytes = decode_bytes,
           .held_bytes = decoded_bytes};
 }

@@ -4,35 +4,27 @@
 namespace vantage {
 namespace {
 
+/// The record of a stored frame has them.
+bool needs_disparities(const FrameTools& tools, const FrameSlot& slot) {
+  return tools.options.saves(SequenceOutput::kDepthResolution) && slot.stored == nullptr &&
+         !slot.is_lead_in;
+}
+
 /// Notes the disparities of a frame and the scale of its depths, for the report on depth
-/// resolution. The record of a stored frame has them.
-class DepthResolutionStep final : public RunStep {
- public:
-  explicit DepthResolutionStep(const FrameTools& tools)
-      : is_saved_(tools.options.saves(SequenceOutput::kDepthResolution)),
-        reference_(tools.options.match.reference),
-        cameras_(tools.cameras) {}
-
-  [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
-    return is_saved_ && slot.stored == nullptr && !slot.is_lead_in;
+/// resolution.
+void note_disparities(const FrameTools& tools, FrameSlot& slot) {
+  const DisparityMap& map = slot.maps.of(tools.options.match.reference).disparity_px;
+  if (const auto found = disparity_quantiles(map.view())) {
+    slot.disparities = {*found, tools.cameras.map_camera_of(slot)->scale};
   }
-
-  void run(FrameSlot& slot) override {
-    if (const auto found = disparity_quantiles(slot.maps.of(reference_).disparity_px.view())) {
-      slot.disparities = {*found, cameras_.map_camera_of(slot)->scale};
-    }
-  }
-
- private:
-  bool is_saved_;
-  Side reference_;
-  FrameCameras cameras_;
-};
+}
 
 }  // namespace
 
 StepEntry depth_resolution_step() {
-  return {.name = "depth", .account = "pictures", .make = make_step<DepthResolutionStep>};
+  return {.name = "depth",
+          .account = "pictures",
+          .make = make_step<needs_disparities, note_disparities>};
 }
 
 }  // namespace vantage

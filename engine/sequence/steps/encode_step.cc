@@ -15,133 +15,125 @@
 namespace vantage {
 namespace {
 
+bool needs_files(const FrameTools& tools, const FrameSlot& slot) {
+  return tools.writes_files && slot.stored == nullptr && !slot.is_lead_in;
+}
+
+std::string extension_of(const FrameTools& tools, const FrameSlot& slot,
+                         const OutputStream& stream) {
+  if (stream.output == SequenceOutput::kDepth) {
+    return tools.options.depth_format;
+  }
+  if (stream.output == SequenceOutput::kCloud || stream.output == SequenceOutput::kMesh) {
+    return "ply";
+  }
+  if (!is_picture(stream.output)) {
+    return tools.options.map_format;
+  }
+  // Pictures keep their depth: PNG holds no floats.
+  const Photograph* picture = stored_picture(slot, stream);
+  return picture != nullptr && std::holds_alternative<Image<float>>(picture->pixels) ? "tiff"
+                                                                                     : "png";
+}
+
+void encode_points(const FrameTools& tools, FrameSlot& slot, const OutputStream& stream) {
+  const MatchedMap& map = slot.maps.of(tools.options.match.reference);
+  const CloudSource source{
+      .disparity_px = map.disparity_px.view(),
+      .colours = tools.options.match.reference == Side::kLeft ? slot.left : slot.right,
+      .unmatched = map.unmatched.view(),
+      .confidence = map.confidence.view(),
+      .camera = tools.cameras.point_camera(slot)};
+  const std::string_view frame = tools.cameras.poses != nullptr ? kWorldFrame : kCameraFrame;
+  // A film may fade to black.
+  CloudOptions options = tools.options.cloud;
+  options.may_be_empty = true;
+  bool is_empty = false;
+  if (stream.output == SequenceOutput::kCloud) {
+    const PointCloud cloud = point_cloud(source, options, tools.execution);
+    is_empty = cloud.size() == 0;
+    slot.encoded = encode_ply(cloud, frame);
+  } else {
+    const TriangleMesh mesh = triangle_mesh(source, options, tools.execution);
+    is_empty = mesh.triangles.empty();
+    slot.encoded = encode_ply(mesh, frame);
+  }
+  if (is_empty) {
+    slot.pair.remarks.push_back(
+        fmt::format("its {} is empty: no pixel has a disparity that was measured", stream.name));
+  }
+}
+
+/// Writes to the slot's `encoded`, as encode_points().
+void encode(const FrameTools& tools, FrameSlot& slot, const OutputStream& stream,
+            const std::filesystem::path& path) {
+  const MatchedMap& map = slot.maps.of(tools.options.match.reference);
+  const auto encode_map = [&](const Image<float>& values) {
+    encode_disparity(path, values.view(), slot.encoded);
+  };
+  switch (stream.output) {
+    case SequenceOutput::kDisparity:
+      encode_map(map.disparity_px);
+      break;
+    case SequenceOutput::kRightDisparity:
+      encode_map(slot.maps.right.disparity_px);
+      break;
+    case SequenceOutput::kConfidence:
+      encode_map(map.confidence);
+      break;
+    case SequenceOutput::kPosteriorMean:
+      encode_map(slot.posterior.mean_px());
+      break;
+    case SequenceOutput::kPosteriorVariance:
+      encode_map(slot.posterior.variance_px2());
+      break;
+    case SequenceOutput::kCyclopean:
+      encode_map(slot.cyclopean.disparity_px);
+      break;
+    case SequenceOutput::kDepth: {
+      Image<float> depth_m;
+      depth_map(map.disparity_px.view(), tools.cameras.map_camera_of(slot)->scale,
+                tools.options.cloud.max_depth.value_or(largest_depth_m(path)), tools.execution,
+                depth_m);
+      encode_depth(path, depth_m.view(), slot.encoded);
+      break;
+    }
+    case SequenceOutput::kDepthResolution: {
+      Image<float> resolution_m;
+      depth_resolution_map(map.disparity_px.view(), tools.cameras.map_camera_of(slot)->scale,
+                           tools.options.used_disparity_step_px(), tools.execution, resolution_m);
+      encode_map(resolution_m);
+      break;
+    }
+    case SequenceOutput::kCloud:
+    case SequenceOutput::kMesh:
+      encode_points(tools, slot, stream);
+      break;
+    default:
+      if (const Photograph* picture = stored_picture(slot, stream)) {
+        encode_photograph(path, *picture, slot.encoded);
+      } else {
+        encode_photograph(path,
+                          Photograph{mask_of(slot, stream, tools.options.match.reference).copy()},
+                          slot.encoded);
+      }
+  }
+}
+
 /// Makes the files of a frame and writes them without their final names.
-class EncodeStep final : public RunStep {
- public:
-  explicit EncodeStep(const FrameTools& tools) : tools_(tools), options_(tools.options) {}
-
-  [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
-    return tools_.writes_files && slot.stored == nullptr && !slot.is_lead_in;
+void encode_files(const FrameTools& tools, FrameSlot& slot) {
+  for (const OutputStream& stream : tools.layout.streams()) {
+    if (stream.as_video) {
+      continue;
+    }
+    const std::filesystem::path name = SequenceLayout::file(
+        stream, slot.frame, slot.pair.details.name, extension_of(tools, slot, stream));
+    const std::filesystem::path path = tools.layout.folder() / name;
+    encode(tools, slot, stream, path);
+    slot.files.add(path, slot.encoded);
+    slot.file_records.push_back({name.string(), {slot.encoded.size(), crc32_of(slot.encoded)}});
   }
-
-  void run(FrameSlot& slot) override {
-    for (const OutputStream& stream : tools_.layout.streams()) {
-      if (stream.as_video) {
-        continue;
-      }
-      const std::filesystem::path name = SequenceLayout::file(
-          stream, slot.frame, slot.pair.details.name, extension_of(slot, stream));
-      const std::filesystem::path path = tools_.layout.folder() / name;
-      encode(slot, stream, path);
-      slot.files.add(path, slot.encoded);
-      slot.file_records.push_back({name.string(), {slot.encoded.size(), crc32_of(slot.encoded)}});
-    }
-  }
-
- private:
-  [[nodiscard]] std::string extension_of(const FrameSlot& slot, const OutputStream& stream) const {
-    if (stream.output == SequenceOutput::kDepth) {
-      return options_.depth_format;
-    }
-    if (stream.output == SequenceOutput::kCloud || stream.output == SequenceOutput::kMesh) {
-      return "ply";
-    }
-    if (!is_picture(stream.output)) {
-      return options_.map_format;
-    }
-    // Pictures keep their depth: PNG holds no floats.
-    const Photograph* picture = stored_picture(slot, stream);
-    return picture != nullptr && std::holds_alternative<Image<float>>(picture->pixels) ? "tiff"
-                                                                                       : "png";
-  }
-
-  /// Writes to the slot's `encoded`, as the others.
-  void encode(FrameSlot& slot, const OutputStream& stream,
-              const std::filesystem::path& path) const {
-    const MatchedMap& map = slot.maps.of(options_.match.reference);
-    const auto encode_map = [&](const Image<float>& values) {
-      encode_disparity(path, values.view(), slot.encoded);
-    };
-    switch (stream.output) {
-      case SequenceOutput::kDisparity:
-        encode_map(map.disparity_px);
-        break;
-      case SequenceOutput::kRightDisparity:
-        encode_map(slot.maps.right.disparity_px);
-        break;
-      case SequenceOutput::kConfidence:
-        encode_map(map.confidence);
-        break;
-      case SequenceOutput::kPosteriorMean:
-        encode_map(slot.posterior.mean_px());
-        break;
-      case SequenceOutput::kPosteriorVariance:
-        encode_map(slot.posterior.variance_px2());
-        break;
-      case SequenceOutput::kCyclopean:
-        encode_map(slot.cyclopean.disparity_px);
-        break;
-      case SequenceOutput::kDepth: {
-        Image<float> depth_m;
-        depth_map(map.disparity_px.view(), tools_.cameras.map_camera_of(slot)->scale,
-                  options_.cloud.max_depth.value_or(largest_depth_m(path)), tools_.execution,
-                  depth_m);
-        encode_depth(path, depth_m.view(), slot.encoded);
-        break;
-      }
-      case SequenceOutput::kDepthResolution: {
-        Image<float> resolution_m;
-        depth_resolution_map(map.disparity_px.view(), tools_.cameras.map_camera_of(slot)->scale,
-                             options_.used_disparity_step_px(), tools_.execution, resolution_m);
-        encode_map(resolution_m);
-        break;
-      }
-      case SequenceOutput::kCloud:
-      case SequenceOutput::kMesh:
-        encode_points(slot, stream);
-        break;
-      default:
-        if (const Photograph* picture = stored_picture(slot, stream)) {
-          encode_photograph(path, *picture, slot.encoded);
-        } else {
-          encode_photograph(path,
-                            Photograph{mask_of(slot, stream, options_.match.reference).copy()},
-                            slot.encoded);
-        }
-    }
-  }
-
-  void encode_points(FrameSlot& slot, const OutputStream& stream) const {
-    const MatchedMap& map = slot.maps.of(options_.match.reference);
-    const CloudSource source{
-        .disparity_px = map.disparity_px.view(),
-        .colours = options_.match.reference == Side::kLeft ? slot.left : slot.right,
-        .unmatched = map.unmatched.view(),
-        .confidence = map.confidence.view(),
-        .camera = tools_.cameras.point_camera(slot)};
-    const std::string_view frame = tools_.cameras.poses != nullptr ? kWorldFrame : kCameraFrame;
-    // A film may fade to black.
-    CloudOptions options = options_.cloud;
-    options.may_be_empty = true;
-    bool is_empty = false;
-    if (stream.output == SequenceOutput::kCloud) {
-      const PointCloud cloud = point_cloud(source, options, tools_.execution);
-      is_empty = cloud.size() == 0;
-      slot.encoded = encode_ply(cloud, frame);
-    } else {
-      const TriangleMesh mesh = triangle_mesh(source, options, tools_.execution);
-      is_empty = mesh.triangles.empty();
-      slot.encoded = encode_ply(mesh, frame);
-    }
-    if (is_empty) {
-      slot.pair.remarks.push_back(
-          fmt::format("its {} is empty: no pixel has a disparity that was measured", stream.name));
-    }
-  }
-
-  FrameTools tools_;
-  const SequenceOptions& options_;
-};
+}
 
 StepBytes encode_bytes(const SequenceOptions& options, const PairShape& shape) {
   const std::size_t pixels = shape.pixels();
@@ -163,7 +155,7 @@ StepEntry encode_step() {
   return {.name = "encode",
           .account = "encode",
           .kind = WorkKind::kWriting,
-          .make = make_step<EncodeStep>,
+          .make = make_step<needs_files, encode_files>,
           .planned_bytes = encode_bytes,
           .held_bytes = [](const FrameSlot& slot) { return held_bytes(slot.encoded); }};
 }

@@ -26,53 +26,40 @@ bool maps_are_stored(const SequenceOptions& options) {
          (has_both || !needs_both);
 }
 
+bool has_stored_maps(const FrameTools& tools, const FrameSlot& slot) {
+  return slot.stored != nullptr && maps_are_stored(tools.options);
+}
+
+/// False if a file has changed since it was written.
+bool read_stored_maps(const FrameTools& tools, FrameSlot& slot) {
+  for (const OutputStream& stream : tools.layout.streams()) {
+    const bool is_primary = stream.output == SequenceOutput::kDisparity;
+    if (!is_primary &&
+        !(stream.output == SequenceOutput::kRightDisparity && needs_views(tools.options, slot))) {
+      continue;
+    }
+    const auto file = std::ranges::find_if(slot.stored->files, [&](const FileRecord& one) {
+      return std::filesystem::path(one.name).parent_path() == stream.name;
+    });
+    if (file == slot.stored->files.end() ||
+        file_content(tools.layout.folder() / file->name) != file->content) {
+      return false;
+    }
+    const bool is_left = is_primary && tools.options.match.reference == Side::kLeft;
+    (is_left ? slot.maps.left : slot.maps.right).disparity_px =
+        read_disparity(tools.layout.folder() / file->name);
+  }
+  return true;
+}
+
 /// Takes the maps of a stored frame from its files if all that is needed is in them with its
 /// original content; otherwise it is no longer a stored frame.
-class ReadMapsStep final : public RunStep {
- public:
-  explicit ReadMapsStep(const FrameTools& tools)
-      : options_(tools.options),
-        layout_(tools.layout),
-        maps_are_stored_(maps_are_stored(tools.options)) {}
-
-  [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
-    return slot.stored != nullptr && maps_are_stored_;
+void read_maps(const FrameTools& tools, FrameSlot& slot) {
+  slot.maps_are_read = read_stored_maps(tools, slot);
+  if (!slot.maps_are_read) {
+    slot.stored = nullptr;
   }
-
-  void run(FrameSlot& slot) override {
-    slot.maps_are_read = read(slot);
-    if (!slot.maps_are_read) {
-      slot.stored = nullptr;
-    }
-  }
-
- private:
-  /// False if a file has changed since it was written.
-  [[nodiscard]] bool read(FrameSlot& slot) const {
-    for (const OutputStream& stream : layout_.streams()) {
-      const bool is_primary = stream.output == SequenceOutput::kDisparity;
-      if (!is_primary &&
-          !(stream.output == SequenceOutput::kRightDisparity && needs_views(options_, slot))) {
-        continue;
-      }
-      const auto file = std::ranges::find_if(slot.stored->files, [&](const FileRecord& one) {
-        return std::filesystem::path(one.name).parent_path() == stream.name;
-      });
-      if (file == slot.stored->files.end() ||
-          file_content(layout_.folder() / file->name) != file->content) {
-        return false;
-      }
-      const bool is_left = is_primary && options_.match.reference == Side::kLeft;
-      (is_left ? slot.maps.left : slot.maps.right).disparity_px =
-          read_disparity(layout_.folder() / file->name);
-    }
-    return true;
-  }
-
-  const SequenceOptions& options_;
-  const SequenceLayout& layout_;
-  bool maps_are_stored_;
-};
+}
 
 }  // namespace
 
@@ -81,7 +68,7 @@ StepEntry read_maps_step() {
           .account = "read",
           .kind = WorkKind::kReading,
           .phase = StepPhase::kCompute,
-          .make = make_step<ReadMapsStep>};
+          .make = make_step<has_stored_maps, read_maps>};
 }
 
 }  // namespace vantage

@@ -3,30 +3,18 @@
 namespace vantage {
 namespace {
 
-class RectifyStep final : public RunStep {
- public:
-  explicit RectifyStep(const FrameTools& tools)
-      : cameras_(tools.cameras),
-        keeps_photographs_(tools.options.unrectified == UnrectifiedSearch::kOnPhotographs),
-        execution_(tools.execution) {}
+bool needs_rectification(const FrameTools& tools, const FrameSlot& slot) {
+  return tools.options.unrectified != UnrectifiedSearch::kOnPhotographs &&
+         tools.cameras.rectifier_of(slot) != nullptr;
+}
 
-  [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
-    return !keeps_photographs_ && cameras_.rectifier_of(slot) != nullptr;
-  }
-
-  void run(FrameSlot& slot) override {
-    const Rectifier& rectifier = *cameras_.rectifier_of(slot);
-    rectifier.apply(slot.pair.left, Side::kLeft, slot.rectified[0], execution_);
-    rectifier.apply(slot.pair.right, Side::kRight, slot.rectified[1], execution_);
-    slot.left = &slot.rectified[0];
-    slot.right = &slot.rectified[1];
-  }
-
- private:
-  FrameCameras cameras_;
-  bool keeps_photographs_;
-  Execution& execution_;
-};
+void rectify(const FrameTools& tools, FrameSlot& slot) {
+  const Rectifier& rectifier = *tools.cameras.rectifier_of(slot);
+  rectifier.apply(slot.pair.left, Side::kLeft, slot.rectified[0], tools.execution);
+  rectifier.apply(slot.pair.right, Side::kRight, slot.rectified[1], tools.execution);
+  slot.left = &slot.rectified[0];
+  slot.right = &slot.rectified[1];
+}
 
 StepBytes rectify_bytes(const SequenceOptions& options, const PairShape& shape) {
   (void)options;
@@ -49,7 +37,7 @@ StepEntry rectify_step() {
   return {.name = "rectify",
           .account = "rectify",
           .phase = StepPhase::kPrepare,
-          .make = make_step<RectifyStep>,
+          .make = make_step<needs_rectification, rectify>,
           .planned_bytes = rectify_bytes,
           .held_bytes = rectified_bytes};
 }

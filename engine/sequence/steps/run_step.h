@@ -82,10 +82,28 @@ struct StepEntry {
   std::size_t (*held_bytes)(const FrameSlot& slot) = nullptr;
 };
 
-/// For StepEntry::make.
+/// For StepEntry::make of a step that keeps something from frame to frame.
 template <typename Step>
 std::unique_ptr<RunStep> make_step(const FrameTools& tools) {
   return std::make_unique<Step>(tools);
+}
+
+/// For StepEntry::make of a step that keeps nothing: RunStep's functions.
+template <bool (*kIsNeeded)(const FrameTools&, const FrameSlot&),
+          void (*kRun)(const FrameTools&, FrameSlot&)>
+std::unique_ptr<RunStep> make_step(const FrameTools& tools) {
+  class FunctionStep final : public RunStep {
+   public:
+    explicit FunctionStep(const FrameTools& of_run) : tools_(of_run) {}
+    [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
+      return kIsNeeded(tools_, slot);
+    }
+    void run(FrameSlot& slot) override { kRun(tools_, slot); }
+
+   private:
+    FrameTools tools_;
+  };
+  return std::make_unique<FunctionStep>(tools);
 }
 
 }  // namespace vantage
