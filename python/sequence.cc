@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "engine/jobs/flicker_values.h"
 #include "engine/jobs/sequence_job.h"
 #include "engine/jobs/sequence_session.h"
 #include "engine/options/frame_step_setting.h"
@@ -141,7 +140,6 @@ class FrameLoop {
     if (!frame || !frames_) {
       return py::none();
     }
-    flicker_.add(frame->flicker);
     return attributes_of(*frame);
   }
 
@@ -163,8 +161,6 @@ class FrameLoop {
     }
     return frames;
   }
-  /// Of all frames so far, as the report of a run has it.
-  [[nodiscard]] py::object flicker() const { return to_python(flicker_values(flicker_)); }
 
  private:
   SequenceRun run_of_source() const {
@@ -221,7 +217,6 @@ class FrameLoop {
         *opened_->execution, MatchedImages(std::move(left), std::move(right)),
         std::move(computed)));
     add_views(slot, found);
-    found["flicker"] = to_python(flicker_values(frame.flicker));
     found["share_reused"] = slot.match.searched_share
                                 ? py::object(py::float_(1 - *slot.match.searched_share))
                                 : py::none();
@@ -252,7 +247,6 @@ class FrameLoop {
   std::optional<SequenceRun> run_;
   std::shared_ptr<FrameIterator> frames_;  ///< null: closed
   std::vector<FrameRemark> skipped_;
-  FlickerSums flicker_;
 };
 
 /// Sequence of the package.
@@ -314,8 +308,7 @@ void bind_sequence(py::module_& module) {
   py::class_<FrameLoop>(module, "FrameLoop")
       .def("next", &FrameLoop::next)
       .def("close", &FrameLoop::close)
-      .def("skipped", &FrameLoop::skipped)
-      .def("flicker", &FrameLoop::flicker);
+      .def("skipped", &FrameLoop::skipped);
   py::class_<Sequence>(module, "Sequence")
       .def(py::init<const std::optional<StereoCalibration>&, bool, py::dict>())
       .def("loop", &Sequence::loop)

@@ -17,7 +17,6 @@
 #include "apps/run/verified_run.h"
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
-#include "engine/jobs/flicker_values.h"
 #include "engine/sequence/journal/delivered_frames.h"
 #include "engine/sequence/journal/sequence_join.h"
 
@@ -119,9 +118,6 @@ int command_merge(const Arguments& arguments) {
                           {"first_frame", frames.first},
                           {"skipped", skipped},
                           {"sound_problem", sound_problem}};
-  if (run.sequence.measure_flicker) {
-    results["flicker"] = flicker_values(total_flicker(delivered));
-  }
   report.set_results(std::move(results));
   report.write(job.report);
   if (!job.quiet) {

@@ -12,7 +12,6 @@
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/process/tell.h"
 #include "apps/settings/depth_settings.h"
-#include "engine/jobs/flicker_values.h"
 #include "engine/order_statistics.h"
 #include "engine/sequence/journal/sequence_join.h"
 
@@ -151,9 +150,6 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
     results["reuse"] = {{"mean_share_of_tiles", sequence.reuse.mean_share_reused()},
                         {"frames", sequence.reuse.frames},
                         {"frames_searched_whole", sequence.reuse.frames_searched}};
-  }
-  if (job.sequence.measure_flicker) {
-    results["flicker"] = flicker_values(total_flicker(delivered));
   }
   if (job.sequence.saves(SequenceOutput::kDepthResolution)) {
     results["depth_resolution"] = depth_resolution_of(job, delivered);

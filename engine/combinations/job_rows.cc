@@ -33,8 +33,8 @@ void add_idle_views(std::vector<Combination>& rows) {
   add_idle_with(rows, Scope::kJob, {"gamma", "intensity-fit"}, given("no-intensity-matching"),
                 "with --no-intensity-matching");
   add_idle(rows, Scope::kJob, {"temporal-threshold"},
-           {above("temporal-prior", 0), is_not("reuse", "none"), given("measure-flicker")},
-           "without --temporal-prior, --reuse and --measure-flicker");
+           {above("temporal-prior", 0), is_not("reuse", "none")},
+           "without --temporal-prior and --reuse");
 }
 
 void add_cameras(std::vector<Combination>& rows) {
@@ -157,8 +157,8 @@ void add_streams(std::vector<Combination>& rows) {
   add_idle(rows, Scope::kRun, {"raw-video"}, {reads}, "without --stereo -");
   add_idle(rows, Scope::kRun, {"stream-format"}, {writes}, "without --output -");
   add_idle_with(rows, Scope::kRun,
-                {"resume", "overwrite", "force", "shard", "video", "measure-flicker", "crf",
-                 "no-sound", "depth-codec", "format"},
+                {"resume", "overwrite", "force", "shard", "video", "crf", "no-sound", "depth-codec",
+                 "format"},
                 writes, "with --output -");
 }
 

@@ -170,8 +170,6 @@ void add_steadiness_settings(Settings& settings, SequenceJob& job) {
                          "With presets and methods like theirs: frame keeps the disparities of the "
                          "frame before where the images do not change, which is faster and "
                          "steadier");
-  settings.flag("measure-flicker", options.measure_flicker,
-                "Measure how much results change where the images do not");
 }
 
 void add_chunk_frames_setting(Settings& settings, SequenceJob& job) {

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/sequence/frame_flicker.h"
 #include "engine/sequence/frame_flow.h"
 #include "engine/sequence/shots/depth_picture.h"
 #include "engine/sequence/steps/frame_needs.h"
@@ -43,7 +42,6 @@ class FrameIterator::Work final : private FrameFlow {
                             [&](int frame) { return !std::ranges::binary_search(frames, frame); }),
                   false, execution),
         options_(options),
-        flicker_(options, execution),
         thread_([this] { compute_all(); }) {}
 
   Work(const Work&) = delete;
@@ -139,7 +137,6 @@ class FrameIterator::Work final : private FrameFlow {
       return;
     }
     ComputedFrame frame;
-    frame.flicker = flicker_.add(*slot);
     if (slot->is_lead_in) {
       return;
     }
@@ -172,7 +169,6 @@ class FrameIterator::Work final : private FrameFlow {
   }
 
   const SequenceOptions& options_;
-  FrameFlicker flicker_;
 
   std::mutex stopping_;  ///< held while the thread is joined
   mutable std::mutex mutex_;

@@ -7,7 +7,6 @@
 #include "engine/execution.h"
 #include "engine/io/images/preview.h"
 #include "engine/reprojection/map_camera.h"
-#include "engine/sequence/past/flicker.h"
 #include "engine/sequence/sequence_runner.h"
 #include "engine/sequence/steps/frame_slot.h"
 
@@ -20,7 +19,6 @@ struct ComputedFrame {
   PreviewRange preview;             ///< the colours of its previews
   bool has_both_maps = false;
   std::optional<MapCamera> camera = std::nullopt;  ///< of its map, if the run has one
-  FlickerSums flicker = {};                        ///< see FrameFlicker
 };
 
 /// The frames of a sequence, one after the other, as SequenceRunner makes them, for a caller in the

@@ -11,7 +11,6 @@
 
 #include "engine/error.h"
 #include "engine/seconds_since.h"
-#include "engine/sequence/frame_flicker.h"
 #include "engine/sequence/frame_flow.h"
 #include "engine/sequence/journal/commit_queue.h"
 #include "engine/sequence/journal/delivered_frames.h"
@@ -31,17 +30,6 @@ double processor_seconds() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// Whether a frame was made without one that it depends on, because that one was skipped.
-bool lacks_past(const std::vector<int>& skipped, int frame, int chunk_begin,
-                FrameDependence::Past past) {
-  using Past = FrameDependence::Past;
-  const int first = past == Past::kNone  ? frame
-                    : past == Past::kOne ? std::max(chunk_begin, frame - 1)
-                                         : chunk_begin;
-  const auto next = std::ranges::lower_bound(skipped, first);
-  return next != skipped.end() && *next < frame;
-}
-
 /// A frame of a stream that ends the run; the frames before it are finished.
 class BadStreamFrame : public Error {
  public:
@@ -59,7 +47,6 @@ class Run final : private FrameFlow {
         threads_(execution.executor().thread_count()),
         stored_(std::move(stored)),
         segments_(options, layout, run.frame_size.value_or(ImageExtent()), execution),
-        flicker_(options, execution),
         queue_(
             journal, [this](int frames, double cells) { tell_progress(frames, cells); },
             accounts().of(deliver_step())) {}
@@ -108,7 +95,6 @@ class Run final : private FrameFlow {
         .frame = slot.frame, .name = slot.pair.details.name, .files = std::move(slot.file_records)};
     record.comfort = slot.comfort;
     record.disparities = slot.disparities;
-    record.flicker = flicker_.add(slot);
     if (slot.is_lead_in) {
       return;
     }
@@ -264,7 +250,6 @@ class Run final : private FrameFlow {
   std::optional<int> segment_begin_;  // start of the unfinished segment
   int last_delivered_ = -1;
   ShotCuts cuts_;  // of a stream
-  FrameFlicker flicker_;
   int last_frame_ = -2;
   std::array<std::uint64_t, 2> last_content_ = {};
   SequenceReport report_;
@@ -274,11 +259,7 @@ class Run final : private FrameFlow {
 }  // namespace
 
 FrameDependence dependence_of(const SequenceOptions& options, const SequenceLayout& layout) {
-  using Past = FrameDependence::Past;
-  return {.past = options.temporal.uses_past() ? Past::kChunk
-                  : options.measure_flicker    ? Past::kOne
-                                               : Past::kNone,
-          .whole_chunks = layout.has_videos()};
+  return {.on_past = options.temporal.uses_past(), .whole_chunks = layout.has_videos()};
 }
 
 SequenceRunner::SequenceRunner(const SequenceOptions& options, Execution& execution)
@@ -298,8 +279,10 @@ SequenceReport SequenceRunner::run(const SequenceRun& run, const SequenceLayout&
   const DeliveredFrames delivered(layout);
   const FrameDependence dependence = dependence_of(options_, layout);
   const std::vector<int> skipped = delivered.skipped({0, run.selection.frame_count});
+  // Whether a frame was made without one that it depends on, because that one was skipped.
   const auto lacks = [&](int frame) {
-    return lacks_past(skipped, frame, run.selection.chunk_begin(frame), dependence.past);
+    const auto next = std::ranges::lower_bound(skipped, run.selection.chunk_begin(frame));
+    return dependence.on_past && next != skipped.end() && *next < frame;
   };
   std::vector<FrameRun> work = plan_work(run.selection, dependence, [&](int frame) {
     if (!delivered.is_done(frame) || lacks(frame)) {

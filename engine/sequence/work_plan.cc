@@ -29,14 +29,7 @@ FrameRange FrameSelection::chunk_of(int frame) const {
 }
 
 FrameRun run_of(const FrameSelection& selection, FrameDependence dependence, FrameRange frames) {
-  int lead_in = 0;
-  if (dependence.past != FrameDependence::Past::kNone) {
-    lead_in = frames.first - selection.chunk_begin(frames.first);
-  }
-  if (dependence.past == FrameDependence::Past::kOne) {
-    lead_in = std::min(lead_in, 1);
-  }
-  return {frames, lead_in};
+  return {frames, dependence.on_past ? frames.first - selection.chunk_begin(frames.first) : 0};
 }
 
 std::vector<FrameRun> plan_work(const FrameSelection& selection, FrameDependence dependence,

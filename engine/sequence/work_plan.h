@@ -43,9 +43,8 @@ struct FrameRun {
 
 /// Dependence between frames, which determines what must be done again.
 struct FrameDependence {
-  /// Frames before it, within its chunk, that a frame's results depend on: none, one, or all.
-  enum class Past { kNone, kOne, kChunk };
-  Past past = Past::kNone;
+  /// A frame's results depend on those before it in its chunk.
+  bool on_past = false;
   /// Frames of a chunk are delivered together (video segments).
   bool whole_chunks = false;
 };

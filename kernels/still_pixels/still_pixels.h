@@ -29,10 +29,4 @@ void box_change_row(const FrameRows& rows, std::int16_t* work, std::int16_t* cha
 void still_row(const std::int16_t* const changes[3], int width, std::int16_t limit,
                std::uint8_t* still);
 
-/// still_view[x] = 255 if at least one shift s in [min_shift, max_shift] leads into the image
-/// and still[x + s] is 255 for all of them; else 0. These are the view's pixels that can only come
-/// from still pixels of the image. min_shift ≤ max_shift.
-void still_view_row(const std::uint8_t* still, int width, int min_shift, int max_shift,
-                    std::uint8_t* still_view);
-
 }  // namespace vantage::kernels

@@ -1,7 +1,6 @@
 """Frames of a Sequence are those of `vantage run`, byte for byte; their threads end with the loop."""
 
 import gc
-import json
 import os
 import shutil
 import signal
@@ -59,12 +58,12 @@ MAPS = {"disparity": "disparity", "right-disparity": "right_disparity", "confide
     {**RANGE, "save": ["disparity", "cyclopean", "cyclopean-occlusion"], "selection": "symmetric",
      "every": 2},
     {**RANGE, "save": ["disparity", "preview", "views", "holes", "sources", "stereo"], "view": 0.5,
-     "intensity_fit": "shot", "stereo_packing": "arcd", "measure_flicker": True},
+     "intensity_fit": "shot", "stereo_packing": "arcd"},
     {**RANGE, "reference": "right", "frames": "1-5:2", "offset": 1},
 ], ids=str)
 def test_frames_are_those_of_a_run(sequence, tmp_path, options):
     run_program("run", *words(sides(sequence)), "-o", tmp_path / "run", "--format", "npy",
-                *words(options), "--report", tmp_path / "report.json", "--no-tuning")
+                *words(options), "--no-tuning")
     frames = vantage.Sequence(**sides(sequence), **options)
     saved = options.get("save", ["disparity"])
     seen = []
@@ -84,8 +83,6 @@ def test_frames_are_those_of_a_run(sequence, tmp_path, options):
         assert (frame.share_reused is not None) == ("reuse" in options)
     stems = [path.stem for path in sorted((tmp_path / "run/disparity").iterdir())]
     assert stems == [f"{index:06}" for index in seen] and len(frames) == len(seen)
-    assert frames.flicker == json.loads((tmp_path / "report.json").read_text())["results"].get(
-        "flicker")
     assert frames.skipped == []
 
 

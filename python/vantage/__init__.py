@@ -312,7 +312,6 @@ class Frame:
     views, holes, sources: lists with an array for each new view: like left; bool, where no image
     shows it; uint8: 85 from the left image, 170 from the right one, 255 from both, 0 neither.
     stereo: the stereo picture with save=["stereo"], else None.
-    flicker: with measure_flicker a dict of the changes since the frame before, else None.
     share_reused: with reuse the share of the maps taken from the frame before, else None.
     remarks: list of texts.
     """
@@ -326,7 +325,6 @@ class Frame:
     holes: list[NDArray[np.bool_]]
     sources: list[NDArray[np.uint8]]
     stereo: NDArray[Any] | None
-    flicker: dict[str, Any] | None
     share_reused: float | None
     remarks: list[str]
 
@@ -344,8 +342,8 @@ class Sequence:
 
     left, right, options: inputs as for `vantage run` (left and right, more and baselines; stereo and
     packing; pairs; sequence and step; offset, every), those of Matcher, and those that concern
-    frames: temporal_prior, temporal_threshold, reuse, measure_flicker, chunk_frames,
-    search_range="shot", preview_range="shot", intensity_fit="shot"; view, view_path, pose, path,
+    frames: temporal_prior, temporal_threshold, reuse, chunk_frames, search_range="shot",
+    preview_range="shot", intensity_fit="shot"; view, view_path, pose, path,
     look_at and how views are made; stereo_views, stereo_packing; keep_going.
     disparities="auto" is the range of the whole sequence.
     save: what to compute of each frame, by the names of `vantage run --save`; default the maps of
@@ -363,8 +361,7 @@ class Sequence:
     at the first frame each time. Raises Error at the first bad frame, after all frames before it;
     with keep_going it is left out.
 
-    After a loop, skipped is a list of (index, reason) of the frames left out, and flicker the
-    changes of all frames, as the report of `vantage run` has them (None: not measured).
+    After a loop, skipped is a list of (index, reason) of the frames left out.
     """
 
     def __init__(self, left: _Path | None = None, right: _Path | None = None, *,
@@ -387,7 +384,6 @@ class Sequence:
              "rectified_pixels": rectified_pixels or None, **options})
         self._frames = self._chosen(frames)
         self.skipped = []
-        self.flicker = None
 
     def _chosen(self, frames):
         count = len(self._native)
@@ -417,7 +413,6 @@ class Sequence:
         finally:
             loop.close()
             self.skipped = loop.skipped()
-            self.flicker = loop.flicker()
 
 
 @_atexit.register

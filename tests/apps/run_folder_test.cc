@@ -170,7 +170,7 @@ TEST_F(InputRunFolder, LinesThatAreDamagedCountForNothing) {
       R"({"frame":3,"files":["disparity/000099.pfm"]})",
       R"({"frame":3,"skipped":1})",
       R"({"frame":3.5e99})",
-      R"({"frame":3,"flicker":{}})",
+      R"({"frame":3,"comfort":{}})",
       R"({"segment":[0]})",
       R"({"segment":"0-19"})",
       R"({"segment":[0,20]})",
@@ -257,7 +257,7 @@ TEST_F(InputRunFolder, ADescriptionThatIsDamagedIsAClearError) {
   for (const ProcessResult& result : {run(out_, {"--resume", "--quiet"}), merge()}) {
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_THAT(result.err,
-                ContainsRegex("has format 7 .*, expected 2; finish the run with that version"));
+                ContainsRegex("has format 7 .*, expected 3; finish the run with that version"));
   }
   EXPECT_TRUE(same_files(results_in(out_), expected));
   succeeds(run(out_, {"--overwrite"}));

@@ -19,10 +19,8 @@ std::size_t random_kills() { return test::runs_everything() ? 20 : 5; }
 /// Execution options of the attempts of a run, taken in turn.
 using Ways = std::vector<Words>;
 
-const Words kTemporalOutputs =
-    joined(kImageOutputs, {"--temporal-prior", "1", "--measure-flicker"});
-const Words kTemporalVideoOutputs =
-    joined(kVideoOutputs, {"--temporal-prior", "1", "--measure-flicker"});
+const Words kTemporalOutputs = joined(kImageOutputs, {"--temporal-prior", "1"});
+const Words kTemporalVideoOutputs = joined(kVideoOutputs, {"--temporal-prior", "1"});
 
 class SlowKilledRun : public RunTest {
  protected:

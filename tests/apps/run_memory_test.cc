@@ -119,7 +119,7 @@ TEST_F(SlowRunMemory, IsNotMoreThanAllowed) {
       words("--frames 0-9 --method membrane --iterations 3 --save "
             "disparity,right-disparity,confidence,preview,views,stereo --view 0.5"),
       words("--frames 0-29 --method ssd --save preview,views --view 0.5 --video preview,views"),
-      words("--frames 0-15 --method diffusion --iterations 4 --temporal-prior 1 --measure-flicker"),
+      words("--frames 0-15 --method diffusion --iterations 4 --temporal-prior 1"),
       {"--frames", "0-15", "--preset", "realtime", "--reuse", "frame"},
       {"--frames", "0-15", "--method", "ssd", "--calibration", rig_, "--save", "views", "--view",
        "0.5,0.1"}};

@@ -96,7 +96,7 @@ TEST_F(RunPoses, TurnedPathsArePathsOfTurnedCameras) {
 
 /// Each part with other threads.
 TEST_F(RunPoses, PartsAreMergedWithoutTheFiles) {
-  const Words outputs = all_views({"--video", "views", "--chunk-frames", "5", "--measure-flicker"});
+  const Words outputs = all_views({"--video", "views", "--chunk-frames", "5"});
   succeeds(run(out_, joined(outputs, {"--executor", "serial", "--in-flight", "1"})));
   const FolderContent expected = results_in(out_);
   const std::string parts = folder_ / "parts";

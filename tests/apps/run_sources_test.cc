@@ -145,20 +145,6 @@ TEST_F(RunSources, BadFramesBeforeOthersThatBuildOnThem) {
   EXPECT_EQ(read_json(folder_ / "report.json")["results"]["frames"], 7);
 }
 
-TEST_F(RunSources, FlickerIsMeasuredAgainBesideARepairedFrame) {
-  const Words outputs = {"--measure-flicker"};
-  const std::string report = folder_ / "whole.json";
-  succeeds(run(folder_ / "whole", joined(outputs, {"--report", report})));
-  const std::string whole = frame_bytes("left", 3);
-  write_file(file("left", 3), "");
-  expect_skipped({3}, outputs);
-  write_file(file("left", 3), whole);
-  expect_repaired(results_in(folder_ / "whole"), outputs);
-  const nlohmann::json results = read_json(folder_ / "report.json")["results"];
-  EXPECT_EQ(results["frames"], 2);
-  EXPECT_EQ(results["flicker"], read_json(report)["results"]["flicker"]);
-}
-
 TEST_F(InputRunSources, AllFramesBad) {
   for (int frame = 0; frame < kFrames; ++frame) {
     write_file(file("left", frame), "");

@@ -93,7 +93,7 @@ TEST_F(RunStreamFolders, TakePartsAndStateAsOfAFile) {
   write_film(kFilm);
   const std::vector<Words> cases = {
       {"--frames", "3-8", "--temporal-prior", "1", "--chunk-frames", "5", "--disparities=0:9"},
-      {"--every", "3+1", "--measure-flicker", "--disparities=0:9"},
+      {"--every", "3+1", "--disparities=0:9"},
       {"--frames", "2-11:4", "--save", "preview", "--video", "preview", "--disparities=0:9"}};
   for (const Words& more : cases) {
     ASSERT_EQ(stream(out_, joined(more, {"--overwrite"})), 0) << err();

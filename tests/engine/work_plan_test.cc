@@ -4,8 +4,6 @@
 
 namespace vantage::work_plan_test {
 
-using Past = FrameDependence::Past;
-
 std::vector<FrameRun> plan(const FrameSelection& selection, FrameDependence dependence,
                            const std::set<int>& done) {
   return plan_work(selection, dependence, [&](int frame) { return done.contains(frame); });
@@ -70,25 +68,22 @@ TEST(WorkPlan, FramesOnTheirOwnAreRedoneOneByOne) {
 
 TEST(WorkPlan, LeadInReachesBackWithinTheChunk) {
   const FrameSelection selection{.frame_count = 9, .chunk_frames = 4, .frames = {}, .shard = {}};
-  EXPECT_THAT(plan(selection, {.past = Past::kChunk}, {0, 1, 4, 6, 8}),
+  EXPECT_THAT(plan(selection, {.on_past = true}, {0, 1, 4, 6, 8}),
               ElementsAre(frames(2, 4, 2), frames(5, 6, 1), frames(7, 8, 3)));
-  EXPECT_THAT(plan(selection, {.past = Past::kOne}, {0, 1, 4, 6}),
-              ElementsAre(frames(2, 4, 1), frames(5, 6, 1), frames(7, 8, 1), frames(8, 9)));
 }
 
 TEST(WorkPlan, LeadInReachesBeforeTheSelection) {
   const FrameSelection selection{
       .frame_count = 9, .chunk_frames = 4, .frames = FrameRange{6, 9}, .shard = {}};
-  EXPECT_THAT(plan(selection, {.past = Past::kChunk}, {}),
-              ElementsAre(frames(6, 8, 2), frames(8, 9)));
+  EXPECT_THAT(plan(selection, {.on_past = true}, {}), ElementsAre(frames(6, 8, 2), frames(8, 9)));
 }
 
 TEST(WorkPlan, WholeChunksAreRedoneWhole) {
   const FrameSelection selection{
       .frame_count = 11, .chunk_frames = 4, .frames = FrameRange{2, 11}, .shard = {}};
-  EXPECT_THAT(plan(selection, {.past = Past::kNone, .whole_chunks = true}, {2, 3, 4, 5, 6, 8}),
+  EXPECT_THAT(plan(selection, {.whole_chunks = true}, {2, 3, 4, 5, 6, 8}),
               ElementsAre(frames(4, 8), frames(8, 11)));
-  EXPECT_THAT(plan(selection, {.past = Past::kChunk, .whole_chunks = true}, {3}),
+  EXPECT_THAT(plan(selection, {.on_past = true, .whole_chunks = true}, {3}),
               ElementsAre(frames(2, 4, 2), frames(4, 8), frames(8, 11)));
 }
 

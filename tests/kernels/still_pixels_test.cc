@@ -80,32 +80,4 @@ TEST_P(StillPixelsKernel, StillMeansNoLargerChangeAround) {
   }
 }
 
-TEST(StillView, NeedsAllThePixelsItCanComeFrom) {
-  std::mt19937 random(75);
-  for (const int width : {1, 2, 7, 40}) {
-    for (int run = 0; run < 300; ++run) {
-      std::vector<std::uint8_t> still(width);
-      for (std::uint8_t& value : still) {
-        value = random() % 6 == 0 ? 0 : 255;
-      }
-      const int min = random_int(random, -width - 3, width + 3);
-      const int max = random_int(random, min, width + 6);
-      std::vector<std::uint8_t> view(still.size(), 7);
-      still_view_row(still.data(), width, min, max, view.data());
-      for (int x = 0; x < width; ++x) {
-        int inside = 0;
-        bool all = true;
-        for (int source = x + min; source <= x + max; ++source) {
-          if (source >= 0 && source < width) {
-            ++inside;
-            all = all && still[source] != 0;
-          }
-        }
-        ASSERT_EQ(view[x], inside > 0 && all ? 255 : 0)
-            << x << " of " << width << ", shifts " << min << " to " << max;
-      }
-    }
-  }
-}
-
 }  // namespace vantage::kernels::still_pixels_test

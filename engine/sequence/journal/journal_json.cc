@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kJournalFormat = 2;
+constexpr int kJournalFormat = 3;
 
 /// Throws nlohmann's exceptions unless it is an integer ≥ 0.
 int count_of(const Json& json) {
@@ -31,36 +31,6 @@ int count_of(const Json& json) {
 
 Json range_json(FrameRange frames) { return Json::array({frames.first, frames.end}); }
 FrameRange range_of(const Json& json) { return {json.at(0).get<int>(), json.at(1).get<int>()}; }
-
-Json flicker_json(const FlickerSums& sums) {
-  Json views = Json::array();
-  for (const ViewFlickerSums& view : sums.views) {
-    views.push_back({view.compared, view.grey_change, view.brightness_jump});
-  }
-  return {{"pixels", sums.pixels},
-          {"still", sums.still},
-          {"grey_change", sums.grey_change},
-          {"compared", sums.compared},
-          {"jumped", sums.jumped},
-          {"disparity_change", sums.disparity_change},
-          {"views", views}};
-}
-
-FlickerSums flicker_of(const Json& json) {
-  FlickerSums sums;
-  sums.frames = 1;
-  sums.pixels = json.at("pixels").get<std::int64_t>();
-  sums.still = json.at("still").get<std::int64_t>();
-  sums.grey_change = json.at("grey_change").get<std::int64_t>();
-  sums.compared = json.at("compared").get<std::int64_t>();
-  sums.jumped = json.at("jumped").get<std::int64_t>();
-  sums.disparity_change = json.at("disparity_change").get<std::int64_t>();
-  for (const Json& view : json.at("views")) {
-    sums.views.push_back({view.at(0).get<std::int64_t>(), view.at(1).get<std::int64_t>(),
-                          view.at(2).get<std::int64_t>()});
-  }
-  return sums;
-}
 
 Json comfort_json(const FrameComfort& comfort) {
   Json json = {{"size", {comfort.width_px, comfort.height_px}},
@@ -142,9 +112,6 @@ struct ToJson {
       json["files"] = files_json(record.files);
     }
     add_list("remarks", record.remarks);
-    if (record.flicker.frames > 0) {
-      json["flicker"] = flicker_json(record.flicker);
-    }
     if (record.comfort) {
       json["comfort"] = comfort_json(*record.comfort);
     }
@@ -191,9 +158,6 @@ JournalRecord record_in(const Json& json) {
   record.absent = json.value("absent", false);
   record.files = files_in(json);
   record.remarks = json.value("remarks", record.remarks);
-  if (json.contains("flicker")) {
-    record.flicker = flicker_of(json.at("flicker"));
-  }
   if (json.contains("comfort")) {
     record.comfort = comfort_of(json.at("comfort"));
   }

@@ -14,7 +14,6 @@
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/sequence/pairs/frame_range.h"
-#include "engine/sequence/past/flicker.h"
 #include "engine/view_geometry/depth_resolution.h"
 
 namespace vantage {
@@ -60,7 +59,6 @@ struct FrameRecord {
   std::string problem = {};               ///< why it was skipped
   std::vector<std::string> remarks = {};  ///< about a frame that is done
   std::vector<FileRecord> files = {};
-  FlickerSums flicker = {};  ///< all 0 if not measured
   std::optional<FrameComfort> comfort = {};
   /// Empty unless depth resolutions are written, and where no disparity is known.
   std::optional<DisparitiesAndScale> disparities = {};

@@ -133,14 +133,4 @@ std::string join_segments(const SequenceOptions& options, const SequenceLayout& 
   return sound_problem;
 }
 
-FlickerSums total_flicker(const DeliveredFrames& delivered) {
-  FlickerSums total;
-  for (const auto& [frame, record] : delivered.records()) {
-    if (record.flicker.frames > 0) {
-      total.add(record.flicker);
-    }
-  }
-  return total;
-}
-
 }  // namespace vantage

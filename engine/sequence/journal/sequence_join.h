@@ -7,7 +7,6 @@
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/options/sequence_options.h"
 #include "engine/sequence/pairs/frame_range.h"
-#include "engine/sequence/past/flicker.h"
 
 namespace vantage {
 
@@ -27,8 +26,5 @@ FrameRange contiguous_frames(const DeliveredFrames& delivered, int frame_count);
 std::string join_segments(const SequenceOptions& options, const SequenceLayout& layout,
                           const RunIdentity& identity, FrameRange frames, bool made_segments,
                           RunJournal& journal);
-
-/// Flicker of all delivered frames.
-FlickerSums total_flicker(const DeliveredFrames& delivered);
 
 }  // namespace vantage

@@ -124,7 +124,6 @@ struct SequenceOptions {
   DepthVideoScale depth_scale;                       ///< of kDepthVideo
   VideoCoding depth_coding = VideoCoding::kFfv1_16;  ///< of kDepthVideo, a grey one
   TemporalOptions temporal;
-  bool measure_flicker = false;
   /// Extension of the disparity, confidence and depth resolution files without the dot, one of
   /// map_formats() that can hold them: all except png can hold the last two.
   std::string map_format = "pfm";

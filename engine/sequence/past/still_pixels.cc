@@ -11,7 +11,6 @@
 
 #include "engine/error.h"
 #include "engine/image/intensity_rows.h"
-#include "kernels/flicker_sums/flicker_sums.h"
 #include "kernels/luma_intensity/luma_intensity.h"
 #include "kernels/still_pixels/still_pixels.h"
 
@@ -98,15 +97,20 @@ StillPixels::StillPixels(double threshold) : limit_(0) {
 std::int64_t StillPixels::find(const Image<std::uint8_t>& before, const Image<std::uint8_t>& now,
                                Execution& execution, Mask& still) const {
   still.resize(now.width(), now.height());
-  return find_in_rows(before, now, {0, now.height()}, execution, still);
+  find_in_rows(before, now, {0, now.height()}, execution, still);
+  std::atomic<std::int64_t> count = 0;
+  execution.for_each_band(now.height(), [&](int first_row, int end_row) {
+    for (int y = first_row; y < end_row; ++y) {
+      count += std::count(still.row(y), still.row(y) + now.width(), std::uint8_t{255});
+    }
+  });
+  return count;
 }
 
-std::int64_t StillPixels::find_in_rows(const Image<std::uint8_t>& before,
-                                       const Image<std::uint8_t>& now, scheduler::Range rows,
-                                       Execution& execution, Mask& still) const {
+void StillPixels::find_in_rows(const Image<std::uint8_t>& before, const Image<std::uint8_t>& now,
+                               scheduler::Range rows, Execution& execution, Mask& still) const {
   const int width = now.width();
   const int height = now.height();
-  std::atomic<std::int64_t> count = 0;
   execution.for_each_band(rows.size(), [&](int first_of_rows, int end_of_rows) {
     const int first_row = rows.begin + first_of_rows;
     const int end_row = rows.begin + end_of_rows;
@@ -115,17 +119,13 @@ std::int64_t StillPixels::find_in_rows(const Image<std::uint8_t>& before,
     for (int y = std::max(0, first_row - 1); y <= first_row; ++y) {
       changes.make(y);
     }
-    std::int64_t of_band = 0;
     for (int y = first_row; y < end_row; ++y) {
       if (y + 1 < height) {
         changes.make(y + 1);
       }
       kernels::still_row(changes.around(y).data(), width, limit_, still.row(y));
-      of_band += kernels::intensity_sum_row(still.row(y), width) / 255;
     }
-    count += of_band;
   });
-  return count;
 }
 
 }  // namespace vantage

@@ -28,9 +28,9 @@ class StillPixels {
   /// called concurrently for different results.
   std::int64_t find(const Image<std::uint8_t>& before, const Image<std::uint8_t>& now,
                     Execution& execution, Mask& still) const;
-  /// Those of some rows of `still`, which has the size of the images. Returns their number.
-  std::int64_t find_in_rows(const Image<std::uint8_t>& before, const Image<std::uint8_t>& now,
-                            scheduler::Range rows, Execution& execution, Mask& still) const;
+  /// Those of some rows of `still`, which has the size of the images.
+  void find_in_rows(const Image<std::uint8_t>& before, const Image<std::uint8_t>& now,
+                    scheduler::Range rows, Execution& execution, Mask& still) const;
 
  private:
   std::int16_t limit_;  ///< of sums over 3×3 pixels

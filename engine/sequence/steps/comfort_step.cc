@@ -6,8 +6,7 @@ namespace {
 
 /// The record of a stored frame has it.
 bool needs_comfort(const FrameTools& tools, const FrameSlot& slot) {
-  return tools.options.saves(SequenceOutput::kComfort) && slot.stored == nullptr &&
-         !slot.is_lead_in;
+  return tools.options.saves(SequenceOutput::kComfort) && slot.stored == nullptr;
 }
 
 /// Measures how comfortable a pair is to watch.

@@ -4,7 +4,7 @@ namespace vantage {
 namespace {
 
 bool needs_cyclopean_map(const FrameTools& tools, const FrameSlot& slot) {
-  return tools.options.saves_cyclopean() && slot.shot != nullptr && !slot.is_lead_in;
+  return tools.options.saves_cyclopean() && slot.shot != nullptr;
 }
 
 void make_map_of_middle(const FrameTools& tools, FrameSlot& slot) {

@@ -6,8 +6,7 @@ namespace {
 
 /// The record of a stored frame has them.
 bool needs_disparities(const FrameTools& tools, const FrameSlot& slot) {
-  return tools.options.saves(SequenceOutput::kDepthResolution) && slot.stored == nullptr &&
-         !slot.is_lead_in;
+  return tools.options.saves(SequenceOutput::kDepthResolution) && slot.stored == nullptr;
 }
 
 /// Notes the disparities of a frame and the scale of its depths, for the report on depth

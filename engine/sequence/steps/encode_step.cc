@@ -16,7 +16,7 @@ namespace vantage {
 namespace {
 
 bool needs_files(const FrameTools& tools, const FrameSlot& slot) {
-  return tools.writes_files && slot.stored == nullptr && !slot.is_lead_in;
+  return tools.writes_files && slot.stored == nullptr;
 }
 
 std::string extension_of(const FrameTools& tools, const FrameSlot& slot,

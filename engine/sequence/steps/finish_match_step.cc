@@ -19,11 +19,10 @@ class FinishMatchStep final : public RunStep {
       : request_(match_request(tools.options)),
         checks_range_(tools.options.baselines.empty() &&
                       tools.options.unrectified == UnrectifiedSearch::kNone),
-        measures_flicker_(tools.options.measure_flicker),
         execution_(tools.execution) {}
 
   [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
-    return slot.shot != nullptr && (!slot.is_lead_in || measures_flicker_);
+    return slot.shot != nullptr;
   }
 
   void run(FrameSlot& slot) override {
@@ -49,7 +48,6 @@ class FinishMatchStep final : public RunStep {
 
   MatchRequest request_;
   bool checks_range_;
-  bool measures_flicker_;
   Execution& execution_;
   std::atomic<int> looks_beyond_ = 0;
 };

@@ -24,7 +24,7 @@ bool videos_show_views(const SequenceOptions& options) {
 }
 
 bool needs_views(const SequenceOptions& options, const FrameSlot& slot) {
-  return slot.stored == nullptr || options.measure_flicker || videos_show_views(options);
+  return slot.stored == nullptr || videos_show_views(options);
 }
 
 bool views_show_photographs(const SequenceOptions& options) {
@@ -40,8 +40,7 @@ ImageExtent extent_of(const ViewPath& view, ImageExtent images) {
 }
 
 bool wants(const SequenceOptions& options, const FrameSlot& slot, SequenceOutput output) {
-  return !slot.is_lead_in &&
-         (slot.stored == nullptr ? options.saves(output) : options.saves_as_video(output));
+  return slot.stored == nullptr ? options.saves(output) : options.saves_as_video(output);
 }
 
 }  // namespace vantage

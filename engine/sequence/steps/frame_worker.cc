@@ -20,7 +20,8 @@ void FrameWorker::run(StepPhase phase, FrameSlot& slot) {
     return;
   }
   for (const Step& step : steps_) {
-    if (step.entry.phase == phase && step.step->is_needed(slot)) {
+    if (step.entry.phase == phase && !(slot.is_lead_in && phase == StepPhase::kEncode) &&
+        step.step->is_needed(slot)) {
       take(step, slot);
     }
   }

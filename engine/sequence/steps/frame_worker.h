@@ -14,8 +14,8 @@ class FrameWorker {
  public:
   explicit FrameWorker(const FrameTools& tools);
 
-  /// Runs the steps of a part of the pipeline that the frame needs; of one without pictures, none.
-  /// Thread rule and errors: as RunStep.
+  /// Runs the steps of a part of the pipeline that the frame needs; of one that is absent none, of
+  /// a lead-in none of StepPhase::kEncode. Thread rule and errors: as RunStep.
   void run(StepPhase phase, FrameSlot& slot);
 
   /// Whether StepPhase::kCompute must be run in the order of the frames, one at a time.

@@ -12,7 +12,7 @@ StepBytes read_bytes(const SequenceOptions& options, const PairShape& shape) {
   return {.of_run = static_cast<std::size_t>(shape.frames_kept) * shape.photograph_bytes()};
 }
 
-/// Delayed and reference frames of the video encoders; what flicker is measured on.
+/// Delayed and reference frames of the video encoders.
 StepBytes write_bytes(const SequenceOptions& options, const PairShape& shape) {
   std::size_t bytes = 0;
   const auto add_video = [&](ImageExtent extent) {
@@ -26,12 +26,6 @@ StepBytes write_bytes(const SequenceOptions& options, const PairShape& shape) {
     }
     for (const ViewPath& view : options.views) {
       add_video(extent_of(view, shape.source));
-    }
-  }
-  if (options.measure_flicker) {
-    bytes += kPastSideBytes * shape.pixels();
-    for (const ViewPath& view : options.views) {
-      bytes += 3 * PairShape::pixels_of(extent_of(view, shape.source));
     }
   }
   return {.of_run = bytes};

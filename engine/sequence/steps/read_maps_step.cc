@@ -9,21 +9,19 @@
 namespace vantage {
 namespace {
 
-/// Whether the files of a frame hold the maps that its pictures in videos, and its flicker
-/// measurement, are made from. False if more is needed than maps contain: masks of filled pixels,
-/// or what later frames take from this one.
+/// Whether the files of a frame hold the maps that its pictures in videos are made from. False if
+/// more is needed than maps contain: masks of filled pixels, or what later frames take from this
+/// one.
 bool maps_are_stored(const SequenceOptions& options) {
   const bool needs_masks = options.temporal.uses_past() ||
                            options.saves_as_video(SequenceOutput::kUnmatched) ||
                            options.saves_as_video(SequenceOutput::kCyclopeanOcclusion) ||
                            options.saves_as_video(SequenceOutput::kRightUnmatched);
-  const bool needs_both =
-      videos_show_views(options) || (options.measure_flicker && !options.views.empty());
   const bool has_both =
       options.match.reference == Side::kLeft && options.saves(SequenceOutput::kRightDisparity);
   // PNG rounds.
   return options.map_format != "png" && options.saves(SequenceOutput::kDisparity) && !needs_masks &&
-         (has_both || !needs_both);
+         (has_both || !videos_show_views(options));
 }
 
 bool has_stored_maps(const FrameTools& tools, const FrameSlot& slot) {

@@ -31,14 +31,11 @@ class ViewsStep final : public RunStep {
   }
 
   [[nodiscard]] bool is_needed(const FrameSlot& slot) const override {
-    if ((slot.is_lead_in && !options_.measure_flicker) || !needs_views(options_, slot)) {
-      return false;
-    }
-    return !options_.views.empty() ||
-           (options_.saves(SequenceOutput::kStereo) &&
-            std::ranges::any_of(options_.stereo_views_x, [&](double view_x) {
-              return slot.photograph_at(view_x) == nullptr;
-            }));
+    const bool is_stereo_made = options_.saves(SequenceOutput::kStereo) &&
+                                std::ranges::any_of(options_.stereo_views_x, [&](double view_x) {
+                                  return slot.photograph_at(view_x) == nullptr;
+                                });
+    return needs_views(options_, slot) && (!options_.views.empty() || is_stereo_made);
   }
 
   void run(FrameSlot& slot) override {
