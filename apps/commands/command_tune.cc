@@ -43,13 +43,12 @@ void add_tune_settings(Settings& settings, TuneJob& job) {
       .short_name = 'o';
   settings.flag("dry-run", job.dry_run, "Print what would be tuned, and stop");
   settings.flag("list", job.list, "List the entries of the tuning file");
-  settings.flag("forget", job.forget, "Remove the entries of this machine from the tuning file");
   add_match_settings(settings, job.match);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(
-      {"size", "images", "for", "budget", "output", "dry-run", "list", "forget", "disparities",
-       "preset", "threads", "quiet"},
+      {"size", "images", "for", "budget", "output", "dry-run", "list", "disparities", "preset",
+       "threads", "quiet"},
       {"vantage tune --size 1280x720 --disparities 0:127",
        "vantage tune --size 1280x720 --disparities 0:127 --preset fast --for run --budget 300",
        "vantage tune --list"});

@@ -13,7 +13,6 @@
 #include <thread>
 
 #include "apps/commands/commands.h"
-#include "apps/commands/commands.h"
 #include "apps/process/interrupt.h"
 #include "apps/process/outputs.h"
 #include "apps/process/progress.h"
@@ -45,12 +44,8 @@ fs::path tuning_path(const TuneJob& job) {
 }
 
 void check(const TuneJob& job, const Settings& settings) {
-  if (job.list && job.forget) {
-    throw UsageError("--list and --forget are both given, expected one of them");
-  }
-  if (job.list || job.forget) {
-    settings.refuse_idle({"size", "images", "for", "budget", "dry-run"},
-                         job.list ? "with --list" : "with --forget");
+  if (job.list) {
+    settings.refuse_idle({"size", "images", "for", "budget", "dry-run"}, "with --list");
     return;
   }
   if (!job.images) {
@@ -73,15 +68,6 @@ int list_entries(const fs::path& path) {
   for (const TuningEntry& entry : content.entries) {
     fmt::print("\n{}", describe(entry));
   }
-  return kExitDone;
-}
-
-int forget_entries(const TuneJob& job, const fs::path& path) {
-  const TuningKey here = make_tuning_key(scheduler::detect_machine(), job.match, {}, {1, 1});
-  const int removed = remove_entries(
-      path, [&](const TuningEntry& entry) { return entry.key.machine == here.machine; });
-  fmt::print("{}: {} entr{} of this machine removed\n", path.string(), removed,
-             removed == 1 ? "y" : "ies");
   return kExitDone;
 }
 
@@ -147,9 +133,6 @@ int run_tune(const TuneJob& job, const Settings& settings) {
   const fs::path path = tuning_path(job);
   if (job.list) {
     return list_entries(path);
-  }
-  if (job.forget) {
-    return forget_entries(job, path);
   }
   FileChecks files(settings);
   files.add_made_file(path, "--output");

@@ -23,10 +23,9 @@ struct TuneJob {
   std::string output;
   bool dry_run = false;
   bool list = false;
-  bool forget = false;
 };
 
-/// Searches for the fastest plans and stores them, or lists or forgets what is stored. Returns the
+/// Searches for the fastest plans and stores them, or lists what is stored. Returns the
 /// exit code. Throws UsageError and Error.
 int run_tune(const TuneJob& job, const Settings& settings);
 

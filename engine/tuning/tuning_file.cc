@@ -162,28 +162,6 @@ Json entries_of(const std::string& text, const std::string& name) {
   return document["entries"];
 }
 
-/// Reads the entries of `path`, calls `change`, and writes them if it returns true.
-void change_entries(const fs::path& path,
-                    const std::function<bool(std::vector<TuningEntry>&)>& change) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw Error(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
-  }
-  const fs::path lock_file = folder / fmt::format(".{}.lock", path.filename().string());
-  create_text_file(lock_file, "");
-  const FileLock lock(lock_file, FileLock::Wait::kYes);  // keeps others from changing the file
-  TuningFileContent content = read_tuning_file(path);
-  if (content.is_foreign) {
-    throw Error(fmt::format("{}; expected a tuning file or none, it is left as it is",
-                            content.warnings.front()));
-  }
-  if (change(content.entries)) {
-    write_text_file(path, text_of(content.entries));
-  }
-}
-
 }  // namespace
 
 std::optional<fs::path> default_tuning_path() {
@@ -239,34 +217,28 @@ const TuningEntry* find_entry(const TuningFileContent& content, const TuningKey&
 }
 
 void store_entry(const fs::path& path, const TuningEntry& entry) {
-  change_entries(path, [&](std::vector<TuningEntry>& entries) {
-    const auto old = std::ranges::find(entries, entry.key, &TuningEntry::key);
-    if (old == entries.end()) {
-      entries.push_back(entry);
-      return true;
-    }
-    if (entry.match) {
-      old->match = entry.match;
-    }
-    if (entry.run) {
-      old->run = entry.run;
-    }
-    return true;
-  });
-}
-
-int remove_entries(const fs::path& path,
-                   const std::function<bool(const TuningEntry&)>& is_unwanted) {
-  int removed = 0;
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) {
-    return removed;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw Error(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
   }
-  change_entries(path, [&](std::vector<TuningEntry>& entries) {
-    removed = static_cast<int>(std::erase_if(entries, is_unwanted));
-    return removed > 0;
-  });
-  return removed;
+  const fs::path lock_file = folder / fmt::format(".{}.lock", path.filename().string());
+  create_text_file(lock_file, "");
+  const FileLock lock(lock_file, FileLock::Wait::kYes);  // keeps others from changing the file
+  TuningFileContent content = read_tuning_file(path);
+  if (content.is_foreign) {
+    throw Error(fmt::format("{}; expected a tuning file or none, it is left as it is",
+                            content.warnings.front()));
+  }
+  const auto old = std::ranges::find(content.entries, entry.key, &TuningEntry::key);
+  if (old == content.entries.end()) {
+    content.entries.push_back(entry);
+  } else {
+    old->match = entry.match ? entry.match : old->match;
+    old->run = entry.run ? entry.run : old->run;
+  }
+  write_text_file(path, text_of(content.entries));
 }
 
 }  // namespace vantage

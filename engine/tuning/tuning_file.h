@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -58,10 +57,5 @@ const TuningEntry* find_entry(const TuningFileContent& content, const TuningKey&
 /// old one. Writes atomically and creates the folder; concurrent processes do not lose each other's
 /// entries. Throws Error when the file cannot be written or is not a tuning file.
 void store_entry(const std::filesystem::path& path, const TuningEntry& entry);
-
-/// Removes the entries for which `is_unwanted` returns true; returns their number. Errors as
-/// store_entry().
-int remove_entries(const std::filesystem::path& path,
-                   const std::function<bool(const TuningEntry&)>& is_unwanted);
 
 }  // namespace vantage

@@ -76,9 +76,6 @@ TEST_F(SlowTuneTest, FindsStoresAndTells) {
   // The entry is what match then looks for.
   succeeds(match_tuned());
   EXPECT_EQ(report()["tuning"]["key"], content.entries[0].key.text());
-  const ProcessResult forget = run({"tune", "--forget"});
-  EXPECT_THAT(forget.out, HasSubstr("1 entry of this machine removed"));
-  EXPECT_TRUE(read_tuning_file(file_).entries.empty());
 }
 
 TEST_F(SlowTuneTest, TunesOneUse) {
@@ -90,18 +87,6 @@ TEST_F(TuneTest, DryRunTellsAndStoresNothing) {
   const ProcessResult result = succeeds(tune({"--dry-run"}));
   EXPECT_THAT(result.out, HasSubstr(file_.string()));
   EXPECT_FALSE(fs::exists(config_));
-}
-
-TEST_F(TuneTest, ForgetsThisMachineOnly) {
-  TuningKey other = key();
-  other.machine = "another machine";
-  store(other, odd_);
-  store(key(), odd_);
-  store(key({}, MatchMethod::kBayes), odd_);
-  EXPECT_THAT(run({"tune", "--forget"}).out, HasSubstr("2 entries"));
-  const TuningFileContent content = read_tuning_file(file_);
-  ASSERT_EQ(content.entries.size(), 1U);
-  EXPECT_EQ(content.entries[0].key, other);
 }
 
 TEST_F(SlowTuneTest, AnUnwritableFileFailsAfterTheResultsAreShown) {
@@ -122,8 +107,7 @@ TEST_F(InputTuneCommand, RefusesWrongUsage) {
       {{"tune", "--size", "71x53", "--disparities=auto"}, "--disparities is auto"},
       {{"tune", "--size", "71x53", "--budget", "-1"}, "budget is -1"},
       {{"tune", "--size", "71x53", "--window", "4"}, "window is 4"},
-      {{"tune", "--list", "--budget", "5"}, "--budget has no effect with --list"},
-      {{"tune", "--list", "--forget"}, "are both given"}};
+      {{"tune", "--list", "--budget", "5"}, "--budget has no effect with --list"}};
   expect_refusals("tune", folder_.path(), refusals, [&](const Words& words) { return run(words); });
 }
 

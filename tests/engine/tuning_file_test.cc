@@ -46,7 +46,6 @@ TEST_F(TuningFileTest, AMissingFileHasNoEntries) {
   const TuningFileContent content = read_tuning_file(path_);
   EXPECT_THAT(content.entries, IsEmpty());
   EXPECT_THAT(content.warnings, IsEmpty());
-  EXPECT_EQ(remove_entries(path_, [](const TuningEntry&) { return true; }), 0);
   EXPECT_FALSE(fs::exists(path_.parent_path()));
 }
 
@@ -88,15 +87,6 @@ TEST_F(TuningFileTest, ReplacesTheEntryOfAKey) {
   EXPECT_EQ(content.entries[0].run->settings.frames_in_flight, 3);
 }
 
-TEST_F(TuningFileTest, RemovesEntries) {
-  for (const std::string size : {"a", "b", "c"}) {
-    store_entry(path_, entry(size));
-  }
-  EXPECT_EQ(remove_entries(path_, [](const TuningEntry& one) { return one.key.size != "b"; }), 2);
-  EXPECT_THAT(read_tuning_file(path_).entries,
-              ElementsAre(testing::Field(&TuningEntry::key, entry("b").key)));
-}
-
 TEST_F(TuningFileTest, WarnsOfFilesThatAreNone) {
   for (const auto& [content, warning] : std::vector<std::pair<std::string, std::string>>{
            {"", "not JSON"},
@@ -116,7 +106,6 @@ TEST_F(TuningFileTest, WarnsOfFilesThatAreNone) {
     EXPECT_THAT(read.warnings[0], HasSubstr(path_.string()));
     // It may be a newer program's: nothing of it must be lost.
     EXPECT_THROW(store_entry(path_, entry("a")), Error);
-    EXPECT_THROW(remove_entries(path_, [](const TuningEntry&) { return true; }), Error);
     EXPECT_EQ(text(), content);
   }
 }
