@@ -28,20 +28,31 @@ template <typename T>
 concept MethodOptions = std::same_as<std::remove_const_t<T>, MethodOverrides> ||
     std::same_as<std::remove_const_t<T>, MethodParameters>;
 
-/// Calls visit(MethodField, options.field...) for every field, in the order of the options.
-template <typename Visit, MethodOptions... Options>
-constexpr void visit_fields(const Visit& visit, Options&... options) {
-  using Field = MethodField;
-  constexpr auto is_positive = [](double v) { return v > 0 && std::isfinite(v); };
-  constexpr auto is_not_negative = [](double v) { return v >= 0 && std::isfinite(v); };
-  constexpr auto is_probability = [](double v) { return v > 0 && v < 1; };
-  constexpr auto is_weight = [](double v) { return v > 0 && v <= 1; };
-  constexpr Limits kGreyLevels = {is_positive, "a number of grey levels above 0"};
-  constexpr Limits kProbability = {is_probability, "a number between 0 and 1, both excluded"};
-  constexpr Limits kNotNegative = {is_not_negative, "a number of at least 0"};
-  constexpr Limits kIterations = {is_within<0, 10000>, "a number from 0 to 10000"};
-  constexpr Limits kLevels = {is_within<1, 10>, "a number from 1 to 10"};
+/// Limits of several fields.
+namespace method_limits {
 
+inline constexpr auto is_positive = [](double v) { return v > 0 && std::isfinite(v); };
+inline constexpr auto is_not_negative = [](double v) { return v >= 0 && std::isfinite(v); };
+inline constexpr auto is_probability = [](double v) { return v > 0 && v < 1; };
+inline constexpr auto is_weight = [](double v) { return v > 0 && v <= 1; };
+inline constexpr auto is_limit = [](double v) { return v >= 0; };
+// 181² · 255² is the largest windowed sum of squares that fits 31 bits.
+inline constexpr auto is_window = [](double v) {
+  return is_within<1, 181>(v) && static_cast<int>(v) % 2 == 1;
+};
+inline constexpr Limits kGreyLevels = {is_positive, "a number of grey levels above 0"};
+inline constexpr Limits kProbability = {is_probability, "a number between 0 and 1, both excluded"};
+inline constexpr Limits kNotNegative = {is_not_negative, "a number of at least 0"};
+inline constexpr Limits kIterations = {is_within<0, 10000>, "a number from 0 to 10000"};
+inline constexpr Limits kLevels = {is_within<1, 10>, "a number from 1 to 10"};
+
+}  // namespace method_limits
+
+/// The part of visit_fields() about costs.
+template <typename Visit, MethodOptions... Options>
+constexpr void visit_cost_fields(const Visit& visit, Options&... options) {
+  using Field = MethodField;
+  using namespace method_limits;
   visit(Field{"cost", readers::kAll}, options.cost...);
   visit(Field{"colour", readers::kAll}, options.colour...);
   visit(Field{"truncation", readers::kCosts, kGreyLevels}, options.truncation...);
@@ -58,12 +69,14 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"norm", readers::kGradientNorm}, options.norm...);
   visit(Field{"gradient", readers::kGradient}, options.gradient...);
   visit(Field{"prefilter", readers::kGradient}, options.prefilter...);
+}
 
+/// About aggregation.
+template <typename Visit, MethodOptions... Options>
+constexpr void visit_aggregation_fields(const Visit& visit, Options&... options) {
+  using Field = MethodField;
+  using namespace method_limits;
   visit(Field{"aggregate", readers::kAll}, options.aggregation...);
-  // 181² · 255² is the largest windowed sum of squares that fits 31 bits.
-  constexpr auto is_window = [](double v) {
-    return is_within<1, 181>(v) && static_cast<int>(v) % 2 == 1;
-  };
   visit(Field{"window", readers::kBox, {is_window, "an odd number from 1 to 181"}},
         options.window_px...);
   visit(Field{"border", readers::kBox}, options.border...);
@@ -102,7 +115,6 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
       Field{
           "level-weight", readers::kBayesWithLevels, {is_weight, "a number above 0 and at most 1"}},
       options.level_weight...);
-  constexpr auto is_limit = [](double v) { return v >= 0; };
   visit(Field{"slant-penalty",
               readers::kBayesWithLevels,
               {is_limit, "a number of at least 0, or none"}},
@@ -112,7 +124,13 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"edge-contrast", readers::kEdges, kGreyLevels}, options.edge_contrast...);
   visit(Field{"edge-diffusion", readers::kEdges, {is_within<0, 1000>, "a number from 0 to 1000"}},
         options.edge_diffusion...);
+}
 
+/// About the selection of winners.
+template <typename Visit, MethodOptions... Options>
+constexpr void visit_selection_fields(const Visit& visit, Options&... options) {
+  using Field = MethodField;
+  using namespace method_limits;
   visit(Field{"selection", readers::kAll}, options.selection...);
   visit(Field{"jump-limit", readers::kScanline, {is_limit, "a number of at least 0, or none"}},
         options.jump_limit...);
@@ -124,6 +142,14 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   visit(Field{"occlusion-penalty", readers::kSymmetric, {is_positive, "a number above 0"}},
         options.occlusion_penalty...);
   visit(Field{"subpixel", readers::kAll}, options.subpixel...);
+}
+
+/// Calls visit(MethodField, options.field...) for every field, in the order of the options.
+template <typename Visit, MethodOptions... Options>
+constexpr void visit_fields(const Visit& visit, Options&... options) {
+  visit_cost_fields(visit, options...);
+  visit_aggregation_fields(visit, options...);
+  visit_selection_fields(visit, options...);
 }
 
 /// The values in force by option; those that the cost and the aggregation do not read are not
