@@ -201,7 +201,7 @@ TEST(SceneViewer, BrightnessMovesWithTheView) {
           SceneVertex loaded = scene.load(vertex);
           auto& image = std::get<Image<std::uint8_t>>(loaded.image.pixels);
           for (const auto [i, y] :
-               positions_of(image.width() * 3, image.height() && vertex == dark)) {
+               positions_of(image.width() * 3, vertex == dark ? image.height() : 0)) {
             image.row(y)[i] = static_cast<std::uint8_t>(0.7 * image.row(y)[i]);
           }
           return loaded;
