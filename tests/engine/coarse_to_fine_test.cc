@@ -1,10 +1,8 @@
 // Matching with several levels: against the plain transcription, and what it must not depend on.
 #include "engine/matching/search/coarse_to_fine/coarse_to_fine.h"
-#include "engine/matching/chain/candidate_geometry.h"
 #include "engine/matching/levels/level_extents.h"
 
 #include "engine/matching/stereo_matcher.h"
-#include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/oracle_comparison.h"
 #include "tests/test_sample.h"
@@ -171,33 +169,6 @@ TEST_P(CoarseToFine, StoredCellsAreExactEnough) {
     equal += exact.choices[k].winner == compact.choices[k].winner ? 1 : 0;
   }
   EXPECT_GE(equal, 0.99 * static_cast<double>(exact.choices.size()));
-}
-
-/// The chains of all levels on the executor that stores every row.
-TEST_P(CoarseToFine, WholeImageExecutorGivesTheSame) {
-  const auto [aggregation, cost] = GetParam();
-  const DisparityRange range{-3, 17};
-  const auto pair = textured_pair(37, 29, range, PixelKind::kColour8, 5);
-  MatchOptions options = options_of(aggregation, cost, 4, range);
-  options.raw = true;
-  const MethodParameters parameters = options.resolved();
-  const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, 37, 29);
-  CostImage left;
-  CostImage right;
-  left.prepare(pair.left, parameters, geometry, {true, false, false}, execution());
-  right.prepare(pair.right, parameters, geometry, {false, true, false}, execution());
-  DisparityMap map(37, 29);
-  CoarseLevels levels;
-  int chains = 0;
-  vantage::CoarseToFine({parameters, geometry, {nullptr, &left, {CostPartner{&right}}}},
-                        {.outputs = {.disparity_px = map.view()}}, levels, execution(),
-                        [&](const MatchChain& chain) {
-                          scheduler::run_whole_image(chain.stages());
-                          ++chains;
-                        })
-      .search();
-  EXPECT_EQ(chains, 1 + 4);
-  EXPECT_TRUE(identical(map, maps_of(pair, options).left.disparity_px));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -1,11 +1,6 @@
 #include "engine/matching/stereo_matcher.h"
-#include "engine/matching/chain/candidate_geometry.h"
 
-#include "engine/matching/chain/match_chain.h"
-#include "scheduler/strip_pipeline.h"
-#include "scheduler/whole_image_pipeline.h"
 #include "tests/engine/engine_test.h"
-#include "tests/engine/plain_aggregation.h"
 #include "tests/engine/plain_matching.h"
 #include "tests/engine/random_grey.h"
 #include "tests/test_sample.h"
@@ -167,39 +162,6 @@ TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SsdDepths, ::testing::Range(0, 5));
-
-TEST(StereoMatcher, ChainEqualsWholeImageOracle) {
-  const Photograph left = random_grey(89, 37, 256, 9);
-  const Photograph right = random_grey(89, 37, 256, 10);
-  const MatchOptions options = raw_options({0, 31}, 7, Border::kClip, Subpixel::kParabola);
-  Execution execution({.threads = 2, .strip_width_px = 11, .band_height_px = 5});
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(left, right, {}, maps);
-
-  const auto geometry = candidate_geometry(options.in_force(), Side::kLeft, 89, 37);
-  PreparedPair pair;
-  const MethodParameters parameters = options.resolved();
-  pair.prepare(left, right, geometry, parameters.window_px * parameters.window_px, {}, execution);
-  ChainInput input;
-  input.pair = &pair;
-  DisparityMap whole(89, 37);
-  const MatchChain chain(parameters, geometry, input, {whole.view(), {}, {}});
-  scheduler::run_whole_image(chain.stages());
-  EXPECT_TRUE(identical(maps.left.disparity_px, whole));
-
-  // The column sums stored as a whole image between two passes.
-  DisparityMap in_passes(89, 37);
-  const MatchChain split(parameters, geometry, input, {in_passes.view(), {}, {}});
-  scheduler::PlanRequest request;
-  request.threads = 2;
-  request.strip_columns = 13;
-  request.band_rows = 7;
-  request.pass_ends = std::vector<int>{1};
-  const auto plan = scheduler::plan_chain(split.stages(), execution.machine(), request);
-  ASSERT_EQ(plan.passes.size(), 2U);
-  scheduler::run_strips(split.stages(), plan, execution.executor(), execution.scratch());
-  EXPECT_TRUE(identical(in_passes, whole));
-}
 
 TEST(StereoMatcher, FindsAKnownShiftEverywhere) {
   const int shift = 6;
