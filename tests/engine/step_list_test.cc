@@ -15,8 +15,9 @@
 namespace vantage::step_list_test {
 
 TEST(StepList, AccountsHaveTheOrderOfTheSteps) {
+  const StepAccounts accounts;
   std::vector<std::string_view> names;
-  for (const StepAccounts::Account& account : StepAccounts().all()) {
+  for (const StepAccounts::Account& account : accounts.all()) {
     names.push_back(account.name);
   }
   EXPECT_THAT(names, testing::ElementsAre("read", "decode", "rectify", "match", "views", "pictures",
