@@ -243,13 +243,12 @@ TEST_F(AutomaticDisparities, AResumedRunTakesTheRangeThatItBeganWith) {
 
 TEST_F(AutomaticDisparities, ACutRangeIsToldOf) {
   Execution execution({.threads = 2});
-  LayeredSceneOptions options;
-  options.width_px = 240;
-  options.height_px = 150;
-  options.far_disparity_px = 5;
-  options.near_disparity_px = 25;
-  options.samples_per_side = 1;
-  const LayeredScene scene(options, execution);
+  const LayeredScene scene({.width_px = 240,
+                            .height_px = 150,
+                            .far_disparity_px = 5,
+                            .near_disparity_px = 25,
+                            .samples_per_side = 1},
+                           execution);
   for (const char* folder : {"l", "r"}) {
     fs::create_directory(folder_ / folder);
   }

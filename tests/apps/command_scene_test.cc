@@ -15,11 +15,7 @@ namespace vantage::command_scene_test {
 class SceneCommand : public testing::Test {
  protected:
   static LayeredSceneOptions small_scene() {
-    LayeredSceneOptions options;
-    options.width_px = 106;
-    options.height_px = 74;
-    options.samples_per_side = 2;
-    return options;
+    return {.width_px = 106, .height_px = 74, .samples_per_side = 2};
   }
 
   SceneCommand() {
@@ -227,11 +223,7 @@ TEST_F(InputSceneCommand, AnImageThatCannotBeReadStopsTheBuildBeforeItBegins) {
 
 // Rows and columns of a scene whose positions are wrong.
 TEST_F(SceneCommand, WarnsOfEdgesThatDoNotCorrespond) {
-  LayeredSceneOptions options;
-  options.width_px = 320;
-  options.height_px = 240;
-  options.samples_per_side = 1;
-  const LayeredScene scene(options, execution_);
+  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 1}, execution_);
   const std::vector<SceneView> places = {{0, 0}, {0.5, 0}, {0, 0.5}, {0.5, 0.6}};
   for (std::size_t i = 0; i < places.size(); ++i) {
     write_photograph(folder_ / std::to_string(i) + ".png", scene.render(places[i], 0).image);

@@ -18,10 +18,7 @@ inline void write_grey(const fs::path& path, int width, int height, std::uint8_t
 class PairTest : public testing::Test {
  protected:
   PairTest() {
-    BookPairOptions options;
-    options.width_px = 71;
-    options.height_px = 53;
-    pair_ = make_book_pair(options);
+    pair_ = make_book_pair({.width_px = 71, .height_px = 53});
     write_photograph(left_, pair_.left);
     write_photograph(right_, pair_.right);
   }

@@ -17,11 +17,7 @@ namespace vantage {
 class PosedCameras : public testing::Test {
  protected:
   static LayeredSceneOptions small_scene(int width_px, int height_px) {
-    LayeredSceneOptions options;
-    options.width_px = width_px;
-    options.height_px = height_px;
-    options.samples_per_side = 2;
-    return options;
+    return {.width_px = width_px, .height_px = height_px, .samples_per_side = 2};
   }
   /// About the axes x, y and z together, in degrees.
   static Eigen::Matrix3d turn(double x, double y, double z) {

@@ -30,10 +30,7 @@ class SlowRunMemory : public RunTest {
     }
     add_links(left_, kFrames);
     add_links(right_, kFrames);
-    BookPairOptions options;
-    options.width_px = kLargeWidth;
-    options.height_px = kLargeHeight;
-    const BookPair pair = make_book_pair(options);
+    const BookPair pair = make_book_pair({.width_px = kLargeWidth, .height_px = kLargeHeight});
     fs::create_directory(large_left_);
     fs::create_directory(large_right_);
     write_photograph(large_left_ + "/000000.png", pair.left);

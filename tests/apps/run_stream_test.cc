@@ -120,33 +120,25 @@ TEST_F(RunStreams, StreamsThatEndEarly) {
 }
 
 TEST_F(RunStreams, WrongOptions) {
+  const auto from_input = [&](const Words& more) {
+    return joined({"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out"}, more);
+  };
+  const auto to_output = [&](const Words& more) {
+    return joined({"--left", left_, "--right", right_, "-o", "-", "--save", "preview"}, more);
+  };
   const std::vector<Refusal> refusals = {
-      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--resume"},
-       "standard input, which cannot be read again"},
-      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--force"},
-       "standard input, which cannot be read again"},
-      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--shard", "1/2"},
-       "standard input is read once"},
-      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--save", "comfort",
-        "--search-range", "shot"},
-       "search-range is shot"},
-      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--save", "depth-video",
-        "--depth-range", "shot"},
-       "depth-range is shot"},
-      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--save", "preview",
-        "--preview-range", "shot"},
-       "preview-range is shot"},
-      {{"--stereo", "-", "--packing", "sbsl", "-o", folder_ / "out", "--view", "0.5",
-        "--intensity-fit", "shot"},
-       "intensity-fit is shot"},
+      {from_input({"--resume"}), "standard input, which cannot be read again"},
+      {from_input({"--force"}), "standard input, which cannot be read again"},
+      {from_input({"--shard", "1/2"}), "standard input is read once"},
+      {from_input({"--save", "comfort", "--search-range", "shot"}), "search-range is shot"},
+      {from_input({"--save", "depth-video", "--depth-range", "shot"}), "depth-range is shot"},
+      {from_input({"--save", "preview", "--preview-range", "shot"}), "preview-range is shot"},
+      {from_input({"--view", "0.5", "--intensity-fit", "shot"}), "intensity-fit is shot"},
       {{"--left", left_, "--right", right_, "-o", "-"}, "--save with one output of pictures"},
       {{"--left", left_, "--right", right_, "-o", "-", "--save", "preview,unmatched"},
        "--save with one output of pictures"},
-      {{"--left", left_, "--right", right_, "-o", "-", "--save", "preview", "--preview-range",
-        "shot"},
-       "expected no shots"},
-      {{"--left", left_, "--right", right_, "-o", "-", "--save", "preview", "--resume"},
-       "--resume has no effect"},
+      {to_output({"--preview-range", "shot"}), "expected no shots"},
+      {to_output({"--resume"}), "--resume has no effect"},
       {{"--left", left_, "--right", right_, "-o", folder_ / "out", "--stream-format", "rawvideo"},
        "--stream-format has no effect"},
       {{"--left", left_, "--right", right_, "-o", folder_ / "out", "--raw-video", "4x4"},

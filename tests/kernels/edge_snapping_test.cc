@@ -28,25 +28,21 @@ std::vector<std::uint32_t> bits(const Row& values) {
 }
 
 TEST(EdgeSnapping, MovesToTheNearestEdge) {
+  const auto moved = [](const Edges& edges, int max_px) {
+    return snapped(edges, max_px, {2, 2, 2, 2, 7, 7, 7, 7});
+  };
   // Places are numbered by the column left of them: the jump is at 3, edge 6 is adjacent to 5
   // and 6.
-  EXPECT_EQ(snapped({0, 0, 0, 0, 0, 0, 9, 0}, 4, {2, 2, 2, 2, 7, 7, 7, 7}),
-            (Row{2, 2, 2, 2, 2, 2, 7, 7}));
-  EXPECT_EQ(snapped({0, 9, 0, 0, 0, 0, 0, 0}, 4, {2, 2, 2, 2, 7, 7, 7, 7}),
-            (Row{2, 2, 7, 7, 7, 7, 7, 7}));
+  EXPECT_EQ(moved({0, 0, 0, 0, 0, 0, 9, 0}, 4), (Row{2, 2, 2, 2, 2, 2, 7, 7}));
+  EXPECT_EQ(moved({0, 9, 0, 0, 0, 0, 0, 0}, 4), (Row{2, 2, 7, 7, 7, 7, 7, 7}));
   // Out of reach.
-  EXPECT_EQ(snapped({0, 0, 0, 0, 0, 0, 9, 0}, 1, {2, 2, 2, 2, 7, 7, 7, 7}),
-            (Row{2, 2, 2, 2, 7, 7, 7, 7}));
-  EXPECT_EQ(snapped({0, 0, 0, 0, 0, 0, 9, 0}, 2, {2, 2, 2, 2, 7, 7, 7, 7}),
-            (Row{2, 2, 2, 2, 2, 2, 7, 7}));
+  EXPECT_EQ(moved({0, 0, 0, 0, 0, 0, 9, 0}, 1), (Row{2, 2, 2, 2, 7, 7, 7, 7}));
+  EXPECT_EQ(moved({0, 0, 0, 0, 0, 0, 9, 0}, 2), (Row{2, 2, 2, 2, 2, 2, 7, 7}));
   // Two as near: the left one.
-  EXPECT_EQ(snapped({0, 9, 0, 0, 0, 0, 9, 0}, 4, {2, 2, 2, 2, 7, 7, 7, 7}),
-            (Row{2, 2, 7, 7, 7, 7, 7, 7}));
+  EXPECT_EQ(moved({0, 9, 0, 0, 0, 0, 9, 0}, 4), (Row{2, 2, 7, 7, 7, 7, 7, 7}));
   // On an edge already, on either side of it.
-  EXPECT_EQ(snapped({0, 0, 9, 9, 0, 0, 9, 0}, 4, {2, 2, 2, 2, 7, 7, 7, 7}),
-            (Row{2, 2, 2, 2, 7, 7, 7, 7}));
-  EXPECT_EQ(snapped({0, 0, 9, 0, 9, 0, 9, 0}, 4, {2, 2, 2, 2, 7, 7, 7, 7}),
-            (Row{2, 2, 2, 2, 7, 7, 7, 7}));
+  EXPECT_EQ(moved({0, 0, 9, 9, 0, 0, 9, 0}, 4), (Row{2, 2, 2, 2, 7, 7, 7, 7}));
+  EXPECT_EQ(moved({0, 0, 9, 0, 9, 0, 9, 0}, 4), (Row{2, 2, 2, 2, 7, 7, 7, 7}));
 }
 
 TEST(EdgeSnapping, TakesTheValueBesideTheDiscontinuity) {
