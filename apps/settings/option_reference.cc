@@ -62,10 +62,13 @@ SettingValue combination_reference() {
     return list;
   };
   for (const Combination& row : combinations()) {
+    if (row.message.empty()) {
+      continue;
+    }
     rows.push_back({{"option", row.option.text()},
                     {row.only_with.empty() ? "not_with" : "only_with",
                      texts(row.only_with.empty() ? row.with : row.only_with)},
-                    {"reason", row.reason},
+                    {"reason", row.reason()},
                     {"preset_gives_way", row.gives_way_to.has_value()}});
   }
   return rows;

@@ -7,7 +7,7 @@ namespace {
 
 /// "save" of "save views".
 std::string_view name_of(const Condition& condition) {
-  return condition.option.substr(0, condition.option.find(' '));
+  return std::string_view(condition.option).substr(0, condition.option.find(' '));
 }
 
 /// Whether the rules of `scope` are those of a command with these options.
@@ -16,6 +16,7 @@ bool applies(CombinationScope scope, const std::function<bool(std::string_view)>
     case CombinationScope::kMethod:
     case CombinationScope::kMatch:
       return true;
+    case CombinationScope::kReuse:
     case CombinationScope::kSequence:
     case CombinationScope::kPairList:
     case CombinationScope::kJob:
@@ -43,7 +44,7 @@ std::vector<std::string> not_with(std::string_view option,
   };
   for (const Combination& row : combinations()) {
     const bool is_refused =
-        row.is_refused && applies(row.scope, is_known) && is_known(name_of(row.option));
+        !row.message.empty() && applies(row.scope, is_known) && is_known(name_of(row.option));
     for (const Condition& with : row.with) {
       if (is_refused && name_of(row.option) == option) {
         add(with);

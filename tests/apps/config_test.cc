@@ -119,6 +119,30 @@ TEST_F(Config, HelpAllHasTheOptionsThatAreReadFromFiles) {
   EXPECT_GT(options, 300);
 }
 
+TEST_F(Config, RowsOfCombinationsNameOptionsThatThereAre) {
+  std::set<std::string> known;
+  for (const char* const command : {"match", "run"}) {
+    for (const auto& option :
+         nlohmann::json::parse(output_of({command}, "--help-json"))["options"]) {
+      known.insert(option["name"]);
+    }
+  }
+  const nlohmann::json rows = nlohmann::json::parse(output_of({}, "--help-json"))["combinations"];
+  EXPECT_GT(rows.size(), 100U);
+  for (const nlohmann::json& row : rows) {
+    std::vector<std::string> texts = row[row.contains("not_with") ? "not_with" : "only_with"];
+    texts.push_back(row["option"]);
+    for (const std::string& text : texts) {
+      std::smatch name;
+      if (std::regex_search(text, name, std::regex("^--([a-z-]+)"))) {
+        EXPECT_TRUE(known.contains(name[1])) << text;
+      } else {
+        EXPECT_THAT(text, testing::StartsWith("a list of pairs with the column"));
+      }
+    }
+  }
+}
+
 TEST_F(Config, HelpIsOneScreenOfOptionsThatHelpAllHas) {
   constexpr int kMaxLines = 45;
   constexpr std::size_t kMaxColumns = 100;

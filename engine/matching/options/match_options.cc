@@ -127,7 +127,7 @@ int candidate_count(DisparityRange disparities, const MethodParameters& paramete
 }
 
 bool can_check_levels(const MethodParameters& parameters) {
-  static const std::vector<Condition> obstacles = obstacles_of_checked_levels();
+  static const std::vector<Condition> obstacles = conditions(kObstaclesOfCheckedLevels);
   return none_holds(obstacles, values_of(parameters, {}));
 }
 

@@ -149,12 +149,12 @@ bool can_prune(const MethodParameters& parameters) {
 }
 
 bool can_search_windows(const MethodParameters& parameters) {
-  static const std::vector<Condition> obstacles = obstacles_of_windows();
+  static const std::vector<Condition> obstacles = conditions(kObstaclesOfWindows);
   return none_holds(obstacles, values_of(parameters, {}));
 }
 
 bool can_reduce_search(const MethodParameters& parameters) {
-  static const std::vector<Condition> obstacles = obstacles_of_reduced_search();
+  static const std::vector<Condition> obstacles = conditions(kObstaclesOfReducedSearch);
   return none_holds(obstacles, values_of(parameters, {}));
 }
 

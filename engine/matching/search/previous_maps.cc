@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <string_view>
 #include <variant>
-#include <vector>
 
 #include "engine/combinations/combinations.h"
 #include "engine/image/memory_use.h"
@@ -13,15 +12,14 @@
 namespace vantage {
 
 std::string_view reuse_obstacle(const ResolvedMatchOptions& options) {
-  static const std::vector<Condition> obstacles = obstacles_of_reuse();
   OptionValues values = values_of(options.parameters, {});
+  values.set("reuse", "frame");
   if (options.disparities_y) {
     values.set("disparities-y", "given");
   }
-  const auto found = std::ranges::find_if(
-      obstacles, [&](const Condition& obstacle) { return obstacle.holds(values); });
-  constexpr std::string_view kWith = "with ";
-  return found == obstacles.end() ? std::string_view() : found->phrase.substr(kWith.size());
+  constexpr std::string_view kExpected = "expected none with ";
+  const Combination* const row = first_case(CombinationScope::kReuse, values);
+  return row == nullptr ? std::string_view() : row->message.substr(kExpected.size());
 }
 
 void copy_winners(const MatchedMap& map, Execution& execution, MatchedMap& copy) {

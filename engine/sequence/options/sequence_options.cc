@@ -238,7 +238,9 @@ void SequenceOptions::validate() const {
   synthesis.validate();
   temporal.validate();
   check_baselines(*this);
-  refuse_combinations(CombinationScope::kSequence, values_of(*this));
+  const OptionValues values = values_of(*this);
+  refuse_combinations(CombinationScope::kSequence, values);
+  refuse_combinations(CombinationScope::kReuse, values);
   if (match.disparities_y) {
     throw UsageError("disparities-y is set, expected none: sequences consist of rectified pairs");
   }
