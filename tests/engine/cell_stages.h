@@ -32,6 +32,34 @@ struct CellVolume {
   [[nodiscard]] Cell& at(int x, int y, int lane) { return cells[index(x, y, lane)]; }
 };
 
+/// Multiples of 1/8 in [least, least + 100].
+inline CellVolume<float> random_cells(scheduler::Extent extent, int lanes, float min,
+                                      std::uint32_t seed) {
+  std::mt19937 random(seed);
+  CellVolume<float> volume(extent, lanes);
+  for (float& cell : volume.cells) {
+    cell = min + static_cast<float>(random() % 801U) / 8;
+  }
+  return volume;
+}
+
+/// A source stage that makes the cells of a volume, which must outlive it.
+class CellSource final : public scheduler::RowStage {
+ public:
+  explicit CellSource(const CellVolume<float>& volume) : RowStage(volume.extent), volume_(volume) {}
+  [[nodiscard]] std::string_view name() const override { return "cell source"; }
+  [[nodiscard]] std::size_t bytes_per_column() const override {
+    return sizeof(float) * static_cast<std::size_t>(volume_.lanes);
+  }
+  void make_row(const scheduler::RowTask& task) const override {
+    std::memcpy(task.output, &volume_.at(task.columns.begin, task.y, 0),
+                bytes_per_column() * static_cast<std::size_t>(task.columns.size()));
+  }
+
+ private:
+  const CellVolume<float>& volume_;
+};
+
 /// A last stage that keeps what it gets in a volume, which must outlive it.
 template <typename Cell>
 class CellSink final : public scheduler::RowStage {
@@ -50,6 +78,59 @@ class CellSink final : public scheduler::RowStage {
 
  private:
   CellVolume<Cell>& volume_;
+};
+
+/// Passes another stage on and shows it no more of its input than it asks for.
+class DeclaredInputOnly final : public scheduler::RowStage {
+ public:
+  DeclaredInputOnly(const scheduler::RowStage& inner, scheduler::Extent input,
+                    std::size_t input_bytes_per_column)
+      : RowStage(inner.extent()),
+        inner_(inner),
+        input_(input),
+        input_bytes_per_column_(input_bytes_per_column) {}
+  [[nodiscard]] std::string_view name() const override { return inner_.name(); }
+  [[nodiscard]] std::size_t bytes_per_column() const override { return inner_.bytes_per_column(); }
+  [[nodiscard]] scheduler::Range input_rows(int y, scheduler::Extent input) const override {
+    return inner_.input_rows(y, input);
+  }
+  [[nodiscard]] scheduler::Range input_columns(scheduler::Range columns,
+                                               scheduler::Extent input) const override {
+    return inner_.input_columns(columns, input);
+  }
+  [[nodiscard]] int window_rows() const override { return inner_.window_rows(); }
+  [[nodiscard]] int first_row_work() const override { return inner_.first_row_work(); }
+  [[nodiscard]] int sweep_start(int y) const override { return inner_.sweep_start(y); }
+  [[nodiscard]] std::size_t state_bytes(scheduler::Range columns,
+                                        scheduler::Extent input) const override {
+    return inner_.state_bytes(columns, input);
+  }
+  void make_row(const scheduler::RowTask& task) const override {
+    const scheduler::Range rows = inner_.input_rows(task.y, input_);
+    const scheduler::Range columns = inner_.input_columns(task.columns, input_);
+    const int capacity_rows = rows.size() + 1;  // a row that is not asked for has its own place
+    const std::size_t row_bytes =
+        (input_bytes_per_column_ * static_cast<std::size_t>(columns.size()) + 63) / 64 * 64;
+    scheduler::ScratchPool pool;
+    const scheduler::ScratchPool::Lease memory =
+        pool.lease(row_bytes * static_cast<std::size_t>(capacity_rows));
+    std::memset(memory.data(), 0xFD, row_bytes * static_cast<std::size_t>(capacity_rows));
+    for (int y = rows.begin; y < rows.end; ++y) {
+      std::memcpy(memory.data() + row_bytes * static_cast<std::size_t>(y % capacity_rows),
+                  task.input.row<std::byte>(y) +
+                      input_bytes_per_column_ *
+                          static_cast<std::size_t>(columns.begin - task.input.columns().begin),
+                  input_bytes_per_column_ * static_cast<std::size_t>(columns.size()));
+    }
+    scheduler::RowTask frugal = task;
+    frugal.input = {memory.data(), row_bytes, capacity_rows, rows, columns};
+    inner_.make_row(frugal);
+  }
+
+ private:
+  const scheduler::RowStage& inner_;
+  scheduler::Extent input_;
+  std::size_t input_bytes_per_column_;
 };
 
 /// Runs `chain` in a sample of strips, bands and passes, on several executors, and calls check()
@@ -92,6 +173,33 @@ void run_in_strips(scheduler::Chain chain, const Check& check) {
       return;
     }
   }
+}
+
+/// What `stages` make of `input`, from the plain executor; expects the same bits from all others.
+template <typename Output>
+CellVolume<Output> run_every_way(const CellVolume<float>& input,
+                                 std::span<const std::unique_ptr<scheduler::RowStage>> stages) {
+  CellVolume<Output> output(input.extent, input.lanes);
+  const CellSource source(input);
+  const CellSink<Output> sink(output);
+  std::vector<std::unique_ptr<scheduler::RowStage>> wrappers;
+  std::vector<const scheduler::RowStage*> chain = {&source};
+  for (const auto& stage : stages) {
+    wrappers.push_back(std::make_unique<DeclaredInputOnly>(*stage, input.extent,
+                                                           chain.back()->bytes_per_column()));
+    wrappers.push_back(std::make_unique<scheduler::Supervised>(*wrappers.back(), input.extent));
+    chain.push_back(wrappers.back().get());
+  }
+  chain.push_back(&sink);
+  scheduler::run_whole_image(chain);
+  const CellVolume<Output> expected = output;
+  run_in_strips(chain, [&] {
+    ASSERT_EQ(std::memcmp(output.cells.data(), expected.cells.data(),
+                          sizeof(Output) * output.cells.size()),
+              0);
+    std::memset(output.cells.data(), 0xFD, sizeof(Output) * output.cells.size());
+  });
+  return expected;
 }
 
 }  // namespace vantage::inline test
