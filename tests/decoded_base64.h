@@ -6,7 +6,8 @@
 #include <string_view>
 #include <vector>
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// The bytes of base64 text with padding, letter by letter (RFC 4648).
 inline std::vector<std::uint8_t> decoded_base64(std::string_view text) {
@@ -41,4 +42,5 @@ inline std::vector<std::uint8_t> decoded_base64(std::string_view text) {
   return bytes;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// Keys' cubic convolution kernel, a = −½, as the paper defines it.
 inline double keys(double t) {
@@ -13,4 +14,5 @@ inline double keys(double t) {
   return t < 2 ? -0.5 * t * t * t + 2.5 * t * t - 4 * t + 2 : 0;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -17,7 +17,8 @@
 // together is rare. The sample is always the same, so that a failure can be repeated, unless
 // VANTAGE_TEST_SEED draws another one. With VANTAGE_TEST_ALL (not empty, not 0) all rows are run.
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 inline bool runs_everything() {
   const char* const all = std::getenv("VANTAGE_TEST_ALL");
@@ -164,4 +165,5 @@ inline std::vector<SampleRow> rows_of(const std::vector<SampleRow>& rows, int va
   return result;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

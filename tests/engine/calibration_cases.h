@@ -5,7 +5,8 @@
 #include "engine/rectification/stereo_calibration.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// The lens model as a formula: the pixel of the point (x, y, 1), in double, without any limit.
 inline Eigen::Vector2d plain_projection(const Camera& camera, double x, double y) {
@@ -68,4 +69,5 @@ inline StereoCalibration random_calibration(std::mt19937& random, int width, int
   return calibration;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -11,7 +11,8 @@
 #include "tests/scheduler/test_stages.h"
 #include "tests/test_sample.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// The cells of an image, [y][x][lane].
 template <typename Cell>
@@ -202,4 +203,5 @@ CellVolume<Output> run_every_way(const CellVolume<float>& input,
   return expected;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

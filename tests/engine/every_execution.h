@@ -4,7 +4,8 @@
 #include "engine/simd.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// Of all channels; unknown values have one place.
 template <typename T>
@@ -39,4 +40,5 @@ void expect_equal_for_every_execution(const Make& make) {
   force_instruction_set("best");
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

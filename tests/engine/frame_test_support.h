@@ -11,7 +11,8 @@ extern "C" {
 #include <libavutil/pixfmt.h>
 }
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// One value everywhere.
 inline Photograph plain_photograph(int width, int height, int value) {
@@ -71,4 +72,5 @@ inline std::vector<int> values_of(FrameSource& source) {
   return values;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -6,7 +6,8 @@
 #include "tests/engine/calibration_cases.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// Points in front of both cameras that both images show, `nearest` to `furthest` baselines away.
 inline std::vector<PointMatch> exact_matches(const StereoCalibration& rig, int width, int height,
@@ -50,4 +51,5 @@ inline void spoil(std::vector<PointMatch>& matches, int width, int height, doubl
   }
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

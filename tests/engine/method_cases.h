@@ -3,7 +3,8 @@
 #include "engine/matching/options/match_options.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// A way of matching, and a name for messages.
 struct MethodCase {
@@ -123,4 +124,5 @@ inline std::vector<MethodCase> method_cases(DisparityRange range) {
   return cases;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

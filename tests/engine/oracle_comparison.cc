@@ -7,7 +7,8 @@
 #include "engine/matching/levels/energy_format.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 namespace {
 
 /// Uniform in [0, 1).
@@ -299,4 +300,5 @@ std::string case_name(Aggregation aggregation) {
   return test_name(aggregation_of(aggregation).name);
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

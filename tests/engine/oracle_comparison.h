@@ -6,7 +6,8 @@
 #include "tests/engine/engine_test.h"
 #include "tests/engine/plain_matching.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 enum class PixelKind { kGrey8, kColour8, kGrey16, kGreyFloat };
 
@@ -76,4 +77,5 @@ Tolerance tolerance_of(const MethodParameters& parameters);
 std::string case_name(MatchCost cost);
 std::string case_name(Aggregation aggregation);
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -1,7 +1,8 @@
 #include "tests/engine/plain_aggregation.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 namespace {
 
 constexpr std::array<std::pair<int, int>, 4> kNeighbours = {{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
@@ -315,4 +316,5 @@ Volume plain_bayes(const Volume& energies, const MethodParameters& parameters, c
   return probabilities_of(now);
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -3,7 +3,8 @@
 #include "tests/engine/engine_test.h"
 #include "tests/engine/plain_costs.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// Mean over the samples of a square window that lie inside both images (EQUATIONS §1; Fig. 1.11);
 /// NaN where a cell is no candidate: its partner, or with `valid` any of its window's, is outside.
@@ -69,4 +70,5 @@ inline double plain_entropy_scale(const MethodParameters& parameters) {
              : 1 / (2 * parameters.sigma_measurement * parameters.sigma_measurement);
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

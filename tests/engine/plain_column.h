@@ -2,7 +2,8 @@
 
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// The energies of one pixel's candidates, and §3 written out for them in double.
 class PlainColumn {
@@ -63,4 +64,5 @@ class PlainColumn {
   int winner_ = -1;
 };
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -4,7 +4,8 @@
 #include "tests/engine/engine_test.h"
 #include "tests/engine/plain_costs.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// A photograph the reference is compared with, and where its camera stands.
 struct PlainPartner {
@@ -283,4 +284,5 @@ class PlainCostCells {
   std::vector<Samples> samples_;
 };
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -3,7 +3,8 @@
 #include "tests/engine/engine_test.h"
 #include "tests/engine/plain_cost_cells.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 namespace {
 
 using Taps = std::vector<double>;
@@ -205,4 +206,5 @@ Volume plain_grey(const Photograph& photograph) {
   return grey;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

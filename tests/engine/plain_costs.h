@@ -3,7 +3,8 @@
 #include "engine/matching/options/match_options.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// A whole disparity space (6.1) in double precision: the oracle of all matching methods. Nothing
 /// of the engine's kernels, layouts or tricks is used to make one.
@@ -97,4 +98,5 @@ Volume plain_measurement_energies(const Photograph& reference, const Photograph&
 /// Grey levels, luma of colours, as cells of one candidate.
 Volume plain_grey(const Photograph& photograph);
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -1,7 +1,8 @@
 #include "tests/engine/plain_levels.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 namespace {
 
 /// Calls visit(x, y) for every column.
@@ -236,4 +237,5 @@ Volume plain_coarse_to_fine(const Volume& costs, const MethodParameters& paramet
   return plain_level(costs, &coarser, of_level, grey);
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

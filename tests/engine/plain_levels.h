@@ -2,7 +2,8 @@
 
 #include "tests/engine/plain_aggregation.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// What is stored of coarse levels.
 enum class StoredCells {
@@ -21,4 +22,5 @@ Volume plain_level(const Volume& costs, const Volume* coarser, const MethodParam
 Volume plain_coarse_to_fine(const Volume& costs, const MethodParameters& parameters,
                             const Volume& grey, StoredCells stored);
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -3,7 +3,8 @@
 #include "engine/matching/costs/cost_table.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -94,4 +95,5 @@ PlainMap plain_match(const Photograph& left, const Photograph& right, Side refer
                       parameters);
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

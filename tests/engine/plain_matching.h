@@ -3,7 +3,8 @@
 #include "tests/engine/engine_test.h"
 #include "tests/engine/plain_levels.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// What the oracle chose at one pixel; all NaN where there is no candidate.
 struct PlainChoice {
@@ -44,4 +45,5 @@ PlainMap plain_match(const Photograph& left, const Photograph& right, Side refer
 /// `range` without what no pixel of an image `width_px` wide can have.
 DisparityRange possible_range(DisparityRange range, int width_px);
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

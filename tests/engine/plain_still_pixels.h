@@ -3,7 +3,8 @@
 #include "engine/image/image.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// Whether (x, y) is a still pixel of two frames, by the definition: the largest mean difference
 /// over 3×3 pixels among the 3×3 pixels around.
@@ -28,4 +29,5 @@ inline bool is_still(const Image<std::uint8_t>& a, const Image<std::uint8_t>& b,
   return true;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

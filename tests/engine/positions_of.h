@@ -1,6 +1,7 @@
 #pragma once
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// Numbers [begin, end).
 struct Interval {
@@ -55,4 +56,5 @@ Positions positions_of(const Grid& grid) {
   return positions_of(grid.width(), grid.height());
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

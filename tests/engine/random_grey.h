@@ -3,7 +3,8 @@
 #include "engine/image/image.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// 8-bit grey noise of `levels` levels; few levels make many ties.
 inline Photograph random_grey(int width, int height, int levels, std::uint32_t seed) {
@@ -16,4 +17,5 @@ inline Photograph random_grey(int width, int height, int levels, std::uint32_t s
   return {std::move(image)};
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

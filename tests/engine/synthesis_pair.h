@@ -3,7 +3,8 @@
 #include "engine/synthesis/view_synthesizer.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// What views are made from.
 struct SynthesisPair {
@@ -57,4 +58,5 @@ inline std::vector<std::uint8_t> bytes_of(const SynthesizedView& view) {
   return bytes;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -4,7 +4,8 @@
 #include "engine/matching/costs/cost_table.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// The keys of a table's entries for which `holds`.
 template <typename Table, typename Holds>
@@ -25,4 +26,5 @@ inline std::vector<Aggregation> all_aggregations() {
   return keys_in(aggregation_table(), [](const CellAggregation&) { return true; });
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

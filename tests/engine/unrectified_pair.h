@@ -7,7 +7,8 @@
 #include "tests/engine/engine_test.h"
 #include "tests/engine/warped_photograph.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 inline Eigen::Matrix3d turned_by(double x, double y, double z) {
   return (Eigen::AngleAxisd(x, Eigen::Vector3d::UnitX()) *
@@ -43,4 +44,5 @@ inline RenderedPair unrectified_pair(Execution& execution, int width = 320, int 
   return pair;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -9,7 +9,8 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 namespace {
 
 struct Close {
@@ -288,4 +289,5 @@ Sound read_sound(const std::filesystem::path& path) {
   return sound;
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

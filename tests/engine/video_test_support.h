@@ -3,7 +3,8 @@
 #include "engine/io/video/video_io.h"
 #include "tests/engine/engine_test.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// A raw video: exactly the numbers that a reader has to convert.
 struct RawVideo {
@@ -117,4 +118,5 @@ std::string sound_codec(const std::filesystem::path& path);
 /// The sound of a file; without any, no samples.
 Sound read_sound(const std::filesystem::path& path);
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage

@@ -8,7 +8,8 @@
 
 #include "engine/image/photograph.h"
 
-namespace vantage::inline test {
+namespace vantage {
+inline namespace test {
 
 /// What `homography` (pixel of the result ← pixel of the image) makes of an 8-bit image, by OpenCV;
 /// `border`: what lies outside it. Of more `samples` along each direction a pixel is their mean,
@@ -36,4 +37,5 @@ inline Photograph warped(const Photograph& photograph, const Eigen::Matrix3d& ho
   return {std::move(result)};
 }
 
-}  // namespace vantage::inline test
+}  // namespace test
+}  // namespace vantage
