@@ -37,7 +37,7 @@ HWY_INLINE void each_lane_vector(int lanes, const Body& body) {
 
 // Minimum per lane over the 128-bit blocks.
 template <class D16>
-HWY_INLINE VecOf<SumTag> fold_min(D16 d16, VecOf<D16> sums) {
+HWY_INLINE VecOf<SumTag> fold_min(D16, VecOf<D16> sums) {
   if constexpr (hn::MaxLanes(D16()) == hn::MaxLanes(SumTag())) {
     return sums;
   } else {
