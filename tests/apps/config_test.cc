@@ -122,8 +122,8 @@ TEST_F(Config, HelpAllHasTheOptionsThatAreReadFromFiles) {
 TEST_F(Config, RowsOfCombinationsNameOptionsThatThereAre) {
   std::set<std::string> known;
   for (const char* const command : {"match", "run"}) {
-    for (const auto& option :
-         nlohmann::json::parse(output_of({command}, "--help-json"))["options"]) {
+    const auto help = nlohmann::json::parse(output_of({command}, "--help-json"));
+    for (const nlohmann::json& option : help["options"]) {
       known.insert(option["name"]);
     }
   }
