@@ -50,7 +50,6 @@ HWY_INLINE int each_vector(D8 d, const RayCensusPairs& row, int column, int lane
 #pragma GCC unroll 3
   for (int c = 0; c < kChannels; ++c) {
     const auto& planes = row.channel[static_cast<std::size_t>(c)].reference;
-#pragma GCC unroll 6
     for (std::size_t p = 0; p < ray_census_bytes(kThresholds); ++p) {
       reference.byte[c][p] = hn::Set(d, planes[p][column]);
     }
