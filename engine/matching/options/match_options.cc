@@ -133,10 +133,11 @@ bool can_check_levels(const MethodParameters& parameters) {
 
 void MatchOptions::validate() const {
   const MethodParameters in_force = resolved();
-  const RefinementOptions of_maps = resolved_refinement();
   vantage::validate(in_force);
   validate_candidates(disparities_auto ? DisparityRange{0, 0} : disparities, disparities_y,
                       in_force);
+  // Counts the candidates, which may be too many for an int until they are checked.
+  const RefinementOptions of_maps = resolved_refinement();
   require_within_limits(of_maps);
   refuse_combinations(CombinationScope::kMatch, values_of(*this, in_force, of_maps));
   require_read(parameters, in_force, chosen());
