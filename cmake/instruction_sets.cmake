@@ -8,16 +8,17 @@ set(VANTAGE_INSTRUCTION_SETS SSE4 AVX2 AVX3 AVX3_DL CACHE STRING
 
 # vantage_best_instruction_set(RESULT): the last set that the processor here has.
 function(vantage_best_instruction_set result)
-  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -march=native -dM -E -x c++ /dev/null
-    OUTPUT_VARIABLE macros)
-  set(sets SSE4 AVX2 AVX3 AVX3_DL)
-  set(macros_of_sets __SSE4_2__ __AVX2__ __AVX512BW__ __AVX512VBMI2__)
-  # The macros by which Highway knows that a set is there.
-  foreach(set macro IN ZIP_LISTS sets macros_of_sets)
-    if(macros MATCHES "define ${macro} ")
-      set(best ${set})
-    endif()
-  endforeach()
+  set(best SSE4)
+  if(EXISTS /proc/cpuinfo)
+    file(STRINGS /proc/cpuinfo features REGEX "^flags" LIMIT_COUNT 1)
+    set(sets AVX2 AVX3 AVX3_DL)
+    set(features_of_sets avx2 avx512bw avx512_vbmi2)
+    foreach(set feature IN ZIP_LISTS sets features_of_sets)
+      if("${features} " MATCHES " ${feature} ")
+        set(best ${set})
+      endif()
+    endforeach()
+  endif()
   set(${result} ${best} PARENT_SCOPE)
 endfunction()
 
