@@ -59,7 +59,7 @@ class Execution {
   /// Calls body(first_row, end_row) in parallel for bands that cover [0, rows) exactly. For row
   /// work without cells (refinement, warping). Bands do not depend on the number of threads.
   void for_each_band(int rows, const std::function<void(int first_row, int end_row)>& body);
-  /// The same row by row: calls body(row).
+  /// Calls body(row) for each row, in the bands of for_each_band().
   template <typename Body>
   void for_each_row(int rows, const Body& body) {
     for_each_band(rows, [&](int first_row, int end_row) {

@@ -37,8 +37,7 @@ constexpr Rule kSequenceRules[] = {
      "different epipolar lines"},
     {kSequence, "save posterior-mean | save posterior-variance", "unrectified",
      "save posterior-mean and posterior-variance cannot be used with unrectified: candidates "
-     "differ "
-     "by fractions from pixel to pixel"},
+     "differ by fractions from pixel to pixel"},
     {kSequence, "temporal-prior > 0", "unrectified",
      "temporal-prior cannot be used with unrectified: candidates differ by fractions from pixel to "
      "pixel"},
@@ -91,8 +90,7 @@ constexpr Rule kRunRules[] = {
      "--kitti-cameras has no effect without --calibration"},
     {kPairList, "unrectified", "column calibration",
      "--unrectified cannot be used with a list of pairs with the column calibration: its file is "
-     "of "
-     "all pairs"},
+     "of all pairs"},
     {kPairList, "view | save stereo", "column calibration",
      "--save views or stereo cannot be used with a list of pairs with the column calibration: a "
      "view is defined by one pair of cameras"},
@@ -104,8 +102,7 @@ constexpr Rule kRunRules[] = {
      "passed from frame to frame"},
     {kPairList, "save depth-video = of the search", "column min-disparity",
      "--save depth-video without --depth-range MIN:MAX cannot be used with a list of pairs with "
-     "the "
-     "column min-disparity: its levels stand for one range"},
+     "the column min-disparity: its levels stand for one range"},
     {kPairList, "search-range = shot", "column min-disparity",
      "--search-range shot cannot be used with a list of pairs with the column min-disparity: the "
      "list has the ranges, expected --search-range film"},
@@ -142,8 +139,7 @@ constexpr Rule kRunRules[] = {
     // Standard input and output are there once.
     {kRun, "resume | force", "stereo = -",
      "--{option} is given, but the input is standard input, which cannot be read again; "
-     "--overwrite "
-     "starts again"},
+     "--overwrite starts again"},
     {kRun, "shard", "stereo = -",
      "--shard is given and --stereo is -, expected a file: standard input is read once"},
     {kRun, "search-range = shot | preview-range = shot | depth-range = shot | intensity-fit = shot",
@@ -153,8 +149,7 @@ constexpr Rule kRunRules[] = {
     {kRun, "raw-video", "unless stereo = -", "no effect without --stereo -"},
     {kRun, "stream-format", "unless output = -", "no effect without --output -"},
     {kRun,
-     "resume | overwrite | force | shard | video | crf | no-sound | depth-codec "
-     "| "
+     "resume | overwrite | force | shard | video | crf | no-sound | depth-codec | "
      "format",
      "output = -", "no effect with --output -"},
     // The run.

@@ -26,7 +26,7 @@ void set_max_image_pixels(long long pixels);
 
 /// Content of a regular file. Throws Error when it is missing, unreadable, empty or not a file.
 std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path);
-/// The same as text.
+/// Content of a regular file as text. Throws as read_file_bytes() does.
 std::string read_file_text(const std::filesystem::path& path);
 
 /// The bytes of a file with bounds-checked access and errors that name the file. Does not own them.

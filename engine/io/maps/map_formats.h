@@ -43,9 +43,10 @@ struct MapFormat {
                                const DisplacementView& displacements, Side side,
                                std::vector<std::uint8_t>& bytes) = nullptr;
 
-  /// Of formats that are no images: whether a file is of this one, and its values. decode() throws
-  /// Error for damaged files, before it takes memory for what they cannot hold.
+  /// Whether a file has this format. Null: files of this format are read as images.
   bool (*recognizes)(const FileBytes& file) = nullptr;
+  /// The values of a file that recognizes() accepts. Throws Error if the file is damaged, before it
+  /// allocates memory for more than the file holds. Null where recognizes is null.
   Image<float> (*decode)(const FileBytes& file) = nullptr;
 
   [[nodiscard]] bool can_hold(MapContent content) const;

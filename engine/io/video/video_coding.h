@@ -25,9 +25,9 @@ struct VideoCodingTraits {
   bool has_full_range = false;  ///< else 16 to 235, with 8 bits
   bool has_odd_sizes = false;   ///< and every frame can be decoded alone
   bool has_crf = false;
-  /// Of the encoder, KEY=VALUE with commas between. All: one algorithm on every processor, one
-  /// thread, and headers that do not depend on the pictures, so that bytes depend on the frames
-  /// only and segments can be joined.
+  /// Options of the encoder, as KEY=VALUE separated by commas. They choose the same algorithm on
+  /// every processor, one thread, and headers that do not depend on the pictures. So the bytes
+  /// depend on the frames only, and segments can be joined.
   const char* options = "";
 };
 
