@@ -328,7 +328,6 @@ inline constexpr KernelWork kEnergyDisparityWork = {0, 3 + 9, 0, 2 + 3 * 0.5};
 /// Likelihoods of the column, their sum, and the winner's share.
 inline constexpr KernelWork kEnergyProbabilityWork = {
     1 + kExp2Operations + 1, kLaneTreeOperations + kExp2Operations + 2, 0.5, 1 + 0.5};
-inline constexpr KernelWork kProbabilityEnergyWork = {0, kDoubleLogOperations + 1, 0, 2};
 /// Of energies: each pass adds one cost to the minimum of two neighbours and compares; then limit,
 /// minimum of the column before, energy, candidates (two comparisons) and minimum. The path is
 /// traced back through a few cells of each column.

@@ -19,7 +19,7 @@ long long target_in_use();
 /// Makes kernels run on `target`, one bit of available_targets(). 0 restores the best one.
 void force_target(long long target);
 
-/// Highway's name of one target: "AVX3", "AVX2", "SSE4", "SSSE3", "SSE2", …
+/// Highway's name of one target: "AVX3_DL", "AVX3", "AVX2", "SSE4"
 std::string_view target_name(long long target);
 
 }  // namespace vantage::kernels

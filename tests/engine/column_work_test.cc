@@ -60,14 +60,13 @@ std::vector<StageWork> works_of(const MatchOptions& method, const ChainCase& mad
       input.prior_weight = 1;
     }
   }
-  std::array<Image<float>, 3> maps;
+  std::array<Image<float>, 2> maps;
   for (Image<float>& map : maps) {
     map = Image<float>(kWidth, kHeight);
   }
   MapOutputs outputs{maps[0].view()};
   if (made.wants_all_outputs) {
     outputs.confidence = maps[1].view();
-    outputs.energy = maps[2].view();
   }
   const MatchChain chain(parameters, geometry, input, outputs, made.level);
   std::vector<StageWork> works;

@@ -13,9 +13,6 @@ kernels::KernelWork EnergySelector::work() const {
   if (wants_probability()) {
     work = work + kernels::kEnergyProbabilityWork;
   }
-  if (!outputs_.energy.empty()) {
-    work = work + kernels::kProbabilityEnergyWork;
-  }
   return work;
 }
 
@@ -75,9 +72,6 @@ void EnergySelector::write(const Selected& selected, int x, int y, int count) co
   std::copy_n(selected.disparity_px.data(), count, outputs_.disparity_px.row(y) + x);
   if (!outputs_.confidence.empty()) {
     std::copy_n(selected.probability.data(), count, outputs_.confidence.row(y) + x);
-  }
-  if (!outputs_.energy.empty()) {
-    kernels::probability_energy_row(selected.probability.data(), count, outputs_.energy.row(y) + x);
   }
 }
 

@@ -48,9 +48,7 @@ class EnergySelector {
   void write(const Selected& selected, int x, int y, int count) const;
 
  private:
-  [[nodiscard]] bool wants_probability() const {
-    return !outputs_.confidence.empty() || !outputs_.energy.empty();
-  }
+  [[nodiscard]] bool wants_probability() const { return !outputs_.confidence.empty(); }
   void select_segment(const kernels::CandidateGeometry& geometry, const Columns& columns,
                       scheduler::Range lanes, int first_candidate, Selected& selected) const;
 

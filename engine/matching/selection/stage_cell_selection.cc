@@ -42,9 +42,6 @@ class CellSelectionStage final : public scheduler::RowStage {
                                (settings_.subpixel == Subpixel::kParabola
                                     ? kernels::parabola_work(settings_.cells_are_probabilities)
                                     : kernels::kIntegerDisparityWork);
-    if (!outputs_.energy.empty() && settings_.cells_are_probabilities) {
-      work = work + kernels::kProbabilityEnergyWork;
-    }
     if (has_confidence && settings_.confidence == ConfidenceMeasure::kEntropy) {
       work = work + kernels::kCellEntropyWork;
     }
@@ -77,7 +74,6 @@ class CellSelectionStage final : public scheduler::RowStage {
     };
     float* disparity_px = part(outputs_.disparity_px);
     float* confidence = part(outputs_.confidence);
-    float* energy = part(outputs_.energy);
     const bool margin = settings_.confidence == ConfidenceMeasure::kMargin;
     kernels::select_cell_winners_row(row,
                                      {winners.data(), best.data(), margin ? confidence : nullptr});
@@ -85,13 +81,6 @@ class CellSelectionStage final : public scheduler::RowStage {
       kernels::parabola_disparity_row(row, winners.data(), disparity_px);
     } else {
       kernels::integer_disparity_row(row, winners.data(), disparity_px);
-    }
-    if (energy != nullptr) {
-      if (settings_.cells_are_probabilities) {
-        kernels::probability_energy_row(best.data(), row.columns, energy);
-      } else {
-        std::copy_n(best.data(), row.columns, energy);
-      }
     }
     if (confidence != nullptr) {
       write_confidence(row, best.data(), confidence);

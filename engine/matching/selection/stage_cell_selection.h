@@ -22,7 +22,6 @@ enum class ConfidenceMeasure {
 struct MapOutputs {
   ImageView<float> disparity_px;
   ImageView<float> confidence = {};
-  ImageView<float> energy = {};          ///< of the winner: E, or −log p; search along rows only
   ImageView<float> disparity_y_px = {};  ///< two-dimensional search: required
 };
 

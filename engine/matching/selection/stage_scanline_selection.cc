@@ -89,17 +89,13 @@ class ScanlineSelectionStage final : public WholeRowStage {
       return view.empty() ? nullptr : view.row(task.y) + columns.begin;
     };
     write_disparities(row, winners + columns.begin, part(outputs_.disparity_px));
-    float* const energy = part(outputs_.energy);
     float* const confidence = part(outputs_.confidence);
-    if (energy != nullptr) {
-      write_energies(row, winners + columns.begin, 1, energy);
-    }
     if (confidence == nullptr) {
       return;
     }
     switch (settings_.confidence) {
       case ConfidenceMeasure::kEvidence:
-        write_energies(row, winners + columns.begin, -1, confidence);
+        write_evidence(row, winners + columns.begin, confidence);
         break;
       case ConfidenceMeasure::kMargin:
         kernels::select_cell_winners_row(row, {nullptr, nullptr, confidence});
@@ -132,12 +128,12 @@ class ScanlineSelectionStage final : public WholeRowStage {
     }
   }
 
-  void write_energies(const kernels::CellRow& row, const std::int32_t* winners, float sign,
-                      float* energy) const {
+  void write_evidence(const kernels::CellRow& row, const std::int32_t* winners,
+                      float* confidence) const {
     const std::ptrdiff_t lanes = geometry_.lanes();
     for (int j = 0; j < row.columns; ++j) {
-      energy[j] = winners[j] == kernels::kNoWinner ? std::numeric_limits<float>::quiet_NaN()
-                                                   : sign * row.cells[j * lanes + winners[j]];
+      confidence[j] = winners[j] == kernels::kNoWinner ? std::numeric_limits<float>::quiet_NaN()
+                                                       : -row.cells[j * lanes + winners[j]];
     }
   }
 

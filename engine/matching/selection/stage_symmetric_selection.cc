@@ -147,9 +147,6 @@ class SymmetricSelectionStage final : public WholeRowStage {
   void write_matches(const SymmetricRow& row, std::int32_t* const* matches, int y) const {
     const auto set = [&](const MapOutputs& outputs, int x, float disparity_px, float energy) {
       outputs.disparity_px.row(y)[x] = disparity_px;
-      if (!outputs.energy.empty()) {
-        outputs.energy.row(y)[x] = energy;
-      }
       if (!outputs.confidence.empty() && !compares_energies()) {
         outputs.confidence.row(y)[x] =
             settings_.confidence == ConfidenceMeasure::kEvidence ? -energy : std::exp(-energy);

@@ -76,7 +76,7 @@ class WindowSelectionStage final : public scheduler::RowStage {
     const bool whole_windows = settings_.border == Border::kValid;
     if (whole_windows &&
         (task.y < settings_.radius || task.y >= extent().rows - settings_.radius)) {
-      for (const auto& map : {outputs_.disparity_px, outputs_.confidence, outputs_.energy}) {
+      for (const auto& map : {outputs_.disparity_px, outputs_.confidence}) {
         if (!map.empty()) {
           std::fill_n(map.row(task.y) + task.columns.begin, task.columns.size(),
                       std::numeric_limits<float>::quiet_NaN());
@@ -109,7 +109,7 @@ class WindowSelectionStage final : public scheduler::RowStage {
   [[nodiscard]] bool has_parabola() const { return settings_.subpixel == Subpixel::kParabola; }
   [[nodiscard]] bool wants_confidence() const { return !outputs_.confidence.empty(); }
   [[nodiscard]] bool wants_energies() const {
-    return wants_confidence() || !outputs_.energy.empty() || settings_.volume != nullptr;
+    return wants_confidence() || settings_.volume != nullptr;
   }
   /// Whether columns with complete windows need more of their sums than the minimum.
   [[nodiscard]] bool keeps_sums() const {
@@ -184,7 +184,7 @@ class WindowSelectionStage final : public scheduler::RowStage {
     }
   }
 
-  /// Energy, confidence and volume of a block, through `mean_energies` where those of all
+  /// Confidence and volume of a block, through `mean_energies` where those of all
   /// candidates are needed.
   void write_energies(const kernels::WinnerRow& row, int y, const std::int32_t* winners,
                       float* mean_energies) const {
@@ -193,9 +193,6 @@ class WindowSelectionStage final : public scheduler::RowStage {
                                    settings_.energy_offset};
     std::array<float, kBlockColumns> best;
     kernels::winner_energy_row(row, unit, winners, best.data());
-    if (!outputs_.energy.empty()) {
-      std::copy_n(best.data(), row.columns, outputs_.energy.row(y) + row.first_column);
-    }
     if (needs_all_energies()) {
       kernels::mean_energy_row(row, unit, mean_energies);
     }
