@@ -40,9 +40,10 @@ void MatchResult::match(const PairMatcher& matcher, const std::vector<Photograph
   if (wanted.posterior) {
     request.volumes = {&posterior, 1};
   }
-  computed.options = unrectified_ ? unrectified_->match(matcher.options(), photographs[0],
-                                                        photographs[1], request, computed.maps)
-                                  : images_.match(matcher, photographs, request, computed.maps);
+  computed.options =
+      unrectified_ ? unrectified_->match(matcher.options(), photographs[0], photographs[1], request,
+                                         computed.maps, computed.report)
+                   : images_.match(matcher, photographs, request, computed.maps, &computed.report);
   if (wanted.posterior) {
     computed.posterior = {moments.mean_px().copy(), moments.variance_px2().copy()};
   }

@@ -43,6 +43,7 @@ struct ComputedMaps {
   MatchOptions options;  ///< with the range that was searched
   DisparityMaps maps;
   Wanted has;
+  MatchReport report = {};
   PosteriorMaps posterior = {};
   std::optional<CyclopeanMap> cyclopean = std::nullopt;
   std::optional<MetricCamera> camera = std::nullopt;   ///< where it is known
@@ -95,6 +96,8 @@ class MatchResult {
                     const pybind11::dict& keywords);
   FramedMesh mesh(const std::optional<StereoCalibration>& calibration,
                   const pybind11::dict& keywords);
+  /// Of the match that made the map of the reference.
+  [[nodiscard]] const MatchReport& report() const { return computed_.report; }
   [[nodiscard]] std::pair<int, int> disparities() const {
     return {computed_.options.disparities.min, computed_.options.disparities.max};
   }

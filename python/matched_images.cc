@@ -77,15 +77,16 @@ std::vector<std::uint32_t> MatchedImages::checksums() const {
 
 MatchOptions MatchedImages::match(const PairMatcher& matcher,
                                   const std::vector<Photograph>& photographs,
-                                  const MatchRequest& request, DisparityMaps& maps) const {
+                                  const MatchRequest& request, DisparityMaps& maps,
+                                  MatchReport* report) const {
   if (is_pair()) {
-    return matcher.match(photographs[0], photographs[1], request, maps);
+    return matcher.match(photographs[0], photographs[1], request, maps, report);
   }
   std::vector<OtherView> others;
   for (std::size_t i = 1; i < photographs.size(); ++i) {
     others.push_back({&photographs[i], baselines_[i - 1]});
   }
-  return matcher.match_several(photographs[0], others, request, maps);
+  return matcher.match_several(photographs[0], others, request, maps, report);
 }
 
 }  // namespace vantage::python

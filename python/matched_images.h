@@ -33,7 +33,8 @@ class MatchedImages {
 
   /// PairMatcher::match(), or match_several(), of photographs from read().
   MatchOptions match(const PairMatcher& matcher, const std::vector<Photograph>& photographs,
-                     const MatchRequest& request, DisparityMaps& maps) const;
+                     const MatchRequest& request, DisparityMaps& maps,
+                     MatchReport* report = nullptr) const;
 
  private:
   [[nodiscard]] std::vector<std::uint32_t> checksums() const;

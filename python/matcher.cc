@@ -94,8 +94,10 @@ std::unique_ptr<MatchResult> Matcher::compute(const ImageArguments& arguments,
                                               Wanted wanted) const {
   check(arguments);
   check_unrectified(arguments, wanted);
-  return std::make_unique<MatchResult>(matcher_, *setup_.execution, arguments.images(), wanted,
-                                       unrectified_, spare_);
+  auto result = std::make_unique<MatchResult>(matcher_, *setup_.execution, arguments.images(),
+                                              wanted, unrectified_, spare_);
+  warnings_.warn(result->report().remarks);
+  return result;
 }
 
 py::dict Matcher::options() {

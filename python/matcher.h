@@ -10,6 +10,7 @@
 #include "engine/options/match_settings.h"
 #include "engine/vantage.h"
 #include "python/match_result.h"
+#include "python/remark_warnings.h"
 #include "python/unrectified_pairs.h"
 
 namespace vantage::python {
@@ -60,6 +61,7 @@ class Matcher {
   PairMatcher matcher_;
   std::shared_ptr<const UnrectifiedPairs> unrectified_;  ///< null: pairs are rectified
   std::shared_ptr<SpareMaps> spare_ = std::make_shared<SpareMaps>();
+  mutable RemarkWarnings warnings_;
   std::optional<std::string> pair_option_;  ///< an option that is given, for pairs only
 };
 

@@ -22,6 +22,7 @@
 #include "python/calls.h"
 #include "python/match_result.h"
 #include "python/options.h"
+#include "python/remark_warnings.h"
 
 namespace vantage::python {
 namespace py = pybind11;
@@ -140,6 +141,12 @@ class FrameLoop {
     if (!frame || !frames_) {
       return py::none();
     }
+    const FrameSlot& slot = *frame->slot;
+    warnings_.warn(slot.match.remarks);
+    if (slot.cut && slot.cut->any()) {
+      const Remark remark = cut_range_remark(*slot.cut, frame->searched, false);
+      warnings_.warn({&remark, 1});
+    }
     return attributes_of(*frame);
   }
 
@@ -247,6 +254,7 @@ class FrameLoop {
   std::optional<SequenceRun> run_;
   std::shared_ptr<FrameIterator> frames_;  ///< null: closed
   std::vector<FrameRemark> skipped_;
+  RemarkWarnings warnings_;
 };
 
 /// Sequence of the package.

@@ -22,7 +22,7 @@ std::shared_ptr<const UnrectifiedPairs::Cameras> UnrectifiedPairs::cameras_for(
 
 MatchOptions UnrectifiedPairs::match(const MatchOptions& options, const Photograph& left,
                                      const Photograph& right, const MatchRequest& request,
-                                     DisparityMaps& maps) const {
+                                     DisparityMaps& maps, MatchReport& report) const {
   const auto cameras = cameras_for(left.width(), left.height());
   const Rectifier& rectifier = cameras->rectifier;
   MatchOptions used = options;
@@ -35,8 +35,8 @@ MatchOptions UnrectifiedPairs::match(const MatchOptions& options, const Photogra
   }
   UnrectifiedMatcher(used, cameras->grids, execution_)
       .match(left, right,
-             {.left = request.left, .right = request.right, .confidence = request.confidence},
-             maps);
+             {.left = request.left, .right = request.right, .confidence = request.confidence}, maps,
+             &report);
   if (on_rectified_) {
     for (const Side side : {Side::kLeft, Side::kRight}) {
       if (side == Side::kLeft ? request.left : request.right) {

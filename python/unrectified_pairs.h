@@ -18,7 +18,7 @@ class UnrectifiedPairs {
   [[nodiscard]] bool on_rectified() const { return on_rectified_; }
   /// PairMatcher::match(); makes no volumes.
   MatchOptions match(const MatchOptions& options, const Photograph& left, const Photograph& right,
-                     const MatchRequest& request, DisparityMaps& maps) const;
+                     const MatchRequest& request, DisparityMaps& maps, MatchReport& report) const;
   /// Cameras of the rectified images of this size.
   [[nodiscard]] StereoCalibration rectified_cameras(int width_px, int height_px) const;
   [[nodiscard]] Photograph rectified(const Photograph& photograph, Side side) const;

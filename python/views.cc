@@ -13,6 +13,7 @@
 #include "python/calls.h"
 #include "python/matcher.h"
 #include "python/options.h"
+#include "python/remark_warnings.h"
 
 namespace vantage::python {
 namespace py = pybind11;
@@ -94,6 +95,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
     pair.maps.right.disparity_px = map_from(right_map, "right_disparity");
   }
   std::vector<ViewPose> poses = poses_of(setup.views, read_toml);
+  MatchReport report;
   std::vector<Photograph> images = on_threads_of(execution, [&] {
     pair.left = left_pixels.copy();
     pair.right = right_pixels.copy();
@@ -102,13 +104,14 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
       rectify_pair(*calibration, setup.rectification, pair, execution);
     }
     if (pair.maps.left.disparity_px.empty()) {
-      PairMatcher(setup.match, execution).match(pair.left, pair.right, {}, pair.maps);
+      PairMatcher(setup.match, execution).match(pair.left, pair.right, {}, pair.maps, &report);
     } else {
       require_size(pair.maps.left.disparity_px, pair.left, "disparity");
       require_size(pair.maps.right.disparity_px, pair.right, "right_disparity");
     }
     return render(setup, poses, pair, execution);
   });
+  RemarkWarnings().warn(report.remarks);
   py::list arrays;
   for (Photograph& image : images) {
     arrays.append(array_of(std::move(image), order));

@@ -7,6 +7,7 @@
 #include "apps/process/interrupt.h"
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
 #include "apps/run/film_reports.h"
 #include "apps/run/resumed_run.h"
@@ -147,6 +148,7 @@ int command_run(const Arguments& arguments) {
   const std::string sound_problem =
       finish_if_whole(job, session, layout, sequence, journal, report);
   fill_report(job, session, sequence, DeliveredFrames(layout), sound_problem, report);
+  tell_remarks(remarks_of(job, sequence), job.common, report);
   report.write(job.common.report);
   if (!job.common.quiet) {
     print_sound_problem("run", sound_problem);

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "engine/matching/range_check.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/vertical_range.h"
@@ -71,10 +72,9 @@ SettingValue cut_range_values(const CutRange& cut) {
           {"share_above", cut.share_above}};
 }
 
-void warn_of_cut_range(const Settings& settings, const CommonOptions& common,
-                       const Photograph& left, const Photograph& right, const DisparityMaps& maps,
-                       const MatchOptions& options, bool is_found, Execution& execution,
-                       RunReport& report) {
+void warn_of_cut_range(const CommonOptions& common, const Photograph& left, const Photograph& right,
+                       const DisparityMaps& maps, const MatchOptions& options, bool is_found,
+                       Execution& execution, RunReport& report) {
   const MatchesAtEnds matches = matches_at_ends(maps, options);
   if (!may_be_cut(matches, options, is_found)) {
     return;
@@ -82,9 +82,9 @@ void warn_of_cut_range(const Settings& settings, const CommonOptions& common,
   const CutRange cut = report.timed_compute(
       "range check", [&] { return look_beyond(matches, left, right, options, execution); });
   report.add_result("cut_range", cut_range_values(cut));
-  if (cut.any() && !common.quiet) {
-    tell("{}: warning: {}; {}\n", settings.command(), to_text(cut, options.disparities),
-         is_found ? "give --disparities MIN:MAX" : kCutRangeAdvice);
+  if (cut.any()) {
+    const Remark remark = cut_range_remark(cut, options.disparities, is_found);
+    tell_remarks({&remark, 1}, common, report);
   }
 }
 

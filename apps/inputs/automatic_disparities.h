@@ -29,14 +29,10 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
 /// seem to be left out (look_beyond()) and reports `results.cut_range`. Results and exit codes do
 /// not depend on it. `is_found`: choose_disparities() estimated the range, so it may end at 0,
 /// which is infinity.
-void warn_of_cut_range(const Settings& settings, const CommonOptions& common,
-                       const Photograph& left, const Photograph& right, const DisparityMaps& maps,
-                       const MatchOptions& options, bool is_found, Execution& execution,
-                       RunReport& report);
+void warn_of_cut_range(const CommonOptions& common, const Photograph& left, const Photograph& right,
+                       const DisparityMaps& maps, const MatchOptions& options, bool is_found,
+                       Execution& execution, RunReport& report);
 /// The check as values of a report.
 SettingValue cut_range_values(const CutRange& cut);
-/// Advice at the end of the warning.
-inline constexpr std::string_view kCutRangeAdvice =
-    "give a wider --disparities, or leave it out for auto";
 
 }  // namespace vantage::apps

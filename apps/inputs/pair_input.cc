@@ -9,6 +9,7 @@
 #include "apps/inputs/given_maps.h"
 #include "apps/inputs/kitti_cameras_choice.h"
 #include "apps/inputs/rectification_check.h"
+#include "apps/reports/remarks.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
@@ -119,13 +120,13 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     const bool is_found = pair.match.disparities_auto;
     choose_disparities(settings, common, result.left, result.right, pair.match, execution, report);
     const StereoMatcher matcher(pair.match, execution);
-    report.add_match(report.timed_compute([&] {
-      MatchReport match;
-      matcher.match(result.left, result.right, {}, result.maps, &match);
-      return match;
-    }));
-    warn_of_cut_range(settings, common, result.left, result.right, result.maps, pair.match,
-                      is_found, execution, report);
+    MatchReport match;
+    report.timed_compute(
+        [&] { matcher.match(result.left, result.right, {}, result.maps, &match); });
+    report.add_match(match);
+    tell_remarks(match.remarks, common, report);
+    warn_of_cut_range(common, result.left, result.right, result.maps, pair.match, is_found,
+                      execution, report);
   }
   return result;
 }

@@ -12,6 +12,7 @@
 #include "apps/process/command_work.h"
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
 #include "engine/error.h"
 #include "engine/image/no_data.h"
@@ -100,6 +101,7 @@ std::string match(const AspJob& job, const DisparityMap& left, const DisparityMa
   report.timed_compute(
       [&] { matcher.match(left_image, right_image, {.right = false}, maps, &matched); });
   report.add_match(matched);
+  tell_remarks(matched.remarks, job.common, report);
   disparities_of_data(maps.left, left.view(), right.view(), execution, map);
   return {};
 }

@@ -16,6 +16,7 @@
 #include "apps/match/vertical_pair.h"
 #include "apps/process/command_work.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
 #include "apps/settings/applied_tuning.h"
 #include "engine/error.h"
@@ -211,7 +212,7 @@ void compute_maps(const MatchJob& job, const Settings& settings, const MatchInpu
     compute();
   }
   if (!job.has_several() && !inputs.rectifier) {
-    warn_of_cut_range(settings, job.common, inputs.left(), inputs.right(), matched.maps, job.match,
+    warn_of_cut_range(job.common, inputs.left(), inputs.right(), matched.maps, job.match,
                       asked.disparities_auto, execution, report);
   }
   if (job.wants_cyclopean()) {
@@ -298,6 +299,7 @@ int run_match(MatchJob& job, const Settings& settings) {
   compute_maps(job, settings, inputs, asked, matcher, space.requests(job), execution, report,
                matched);
   report.add_match(matched.report);
+  tell_remarks(matched.report.remarks, job.common, report);
   report.set_memory(memory_use(inputs.images, matched.maps, matcher, execution));
   if (job.vertical) {
     transpose(matched.maps);

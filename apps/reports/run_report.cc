@@ -148,7 +148,9 @@ SettingValue RunReport::json() const {
       {"seconds", {{"wall", wall_seconds()}, {"compute", compute_seconds_}, {"stages", stages}}},
       {"cells", cells_},
       {"cells_per_second", cells_per_second()},
-      {"peak_memory_bytes", peak_bytes}};
+      {"peak_memory_bytes", peak_bytes},
+      {"warnings", warnings_},
+      {"notes", notes_}};
   if (finest_pixels_ > 0) {
     document["candidates_per_pixel"] = finest_cells_ / finest_pixels_;
   }

@@ -14,6 +14,7 @@
 #include "engine/image/memory_use.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/options/setting_value.h"
+#include "engine/remark.h"
 #include "engine/seconds_since.h"
 #include "scheduler/strip_plan.h"
 #include "scheduler/trace.h"
@@ -74,6 +75,10 @@ class RunReport {
   void set_memory(MemoryUse memory) { memory_ = std::move(memory); }
   /// Command-specific findings under the key `results`.
   void set_results(SettingValue results) { results_ = std::move(results); }
+  /// Texts under the keys `warnings` and `notes`.
+  void add_remark(const Remark& remark) {
+    (remark.is_warning() ? warnings_ : notes_).push_back(remark.text);
+  }
   /// Another finding, which set_results() does not replace.
   void add_result(const std::string& name, SettingValue value) {
     more_results_[name] = std::move(value);
@@ -118,6 +123,8 @@ class RunReport {
   SettingValue tuning_;
   std::string tuning_summary_;
   std::optional<MemoryUse> memory_;
+  SettingValue warnings_ = SettingValue::array();
+  SettingValue notes_ = SettingValue::array();
   SettingValue results_;
   SettingValue more_results_ = SettingValue::object();
   std::string isa_;

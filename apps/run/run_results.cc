@@ -104,15 +104,24 @@ SettingValue depth_resolution_of(const RunJob& job, const DeliveredFrames& deliv
   return values;
 }
 
-void warn_of_cut_range(const RunJob& job, const SequenceReport& sequence) {
-  if (sequence.cut) {
-    tell("run: warning: frame {}: {}; the range looks as narrow for {} of {} frames; {}\n",
-         sequence.cut_frame, to_text(*sequence.cut, job.sequence.match.disparities),
-         sequence.frames_maybe_cut, sequence.frames, kCutRangeAdvice);
-  }
-}
-
 }  // namespace
+
+std::vector<Remark> remarks_of(const RunJob& job, const SequenceReport& sequence) {
+  std::vector<Remark> remarks;
+  for (const auto& [remark, frame, frames] : sequence.match_remarks) {
+    remarks.push_back(remark);
+    remarks.back().text = fmt::format("frame {}: {}{}", frame, remark.text,
+                                      frames == 1 ? "" : fmt::format("; {} frames alike", frames));
+  }
+  if (sequence.cut) {
+    remarks.push_back(
+        {Remark::Kind::kWarning, "range",
+         fmt::format("frame {}: {}; the range looks as narrow for {} of {} frames; {}",
+                     sequence.cut_frame, to_text(*sequence.cut, job.sequence.match.disparities),
+                     sequence.frames_maybe_cut, sequence.frames, kCutRangeAdvice)});
+  }
+  return remarks;
+}
 
 void fill_report(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
                  const DeliveredFrames& delivered, const std::string& sound_problem,
@@ -171,7 +180,6 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
                    double wall_seconds) {
   print_remarks("", sequence.remarks);
   print_remarks("skipped ", sequence.skipped);
-  warn_of_cut_range(job, sequence);
   std::string line =
       fmt::format("run: {} frame{}{}", sequence.frames, sequence.frames == 1 ? "" : "s",
                   session.takes_any_size(job) ? "" : text_of_size(job, session));

@@ -16,6 +16,9 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
                  const DeliveredFrames& delivered, const std::string& sound_problem,
                  RunReport& report);
 
+/// What matching remarked, each kind and subject once: of the first frame that has it.
+std::vector<Remark> remarks_of(const RunJob& job, const SequenceReport& sequence);
+
 /// Prints a line to stderr if videos lack the sound they should have.
 void print_sound_problem(const std::string& command, const std::string& problem);
 

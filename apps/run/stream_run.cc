@@ -8,6 +8,8 @@
 #include "apps/process/interrupt.h"
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
+#include "apps/run/run_results.h"
 #include "engine/error.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/stream_runner.h"
@@ -77,6 +79,7 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
                       {"width_px", sequence.width_px},
                       {"height_px", sequence.height_px},
                       {"frames_per_second_of_video", to_string(job.sequence.frame_rate)}});
+  tell_remarks(remarks_of(job, sequence), job.common, report);
   report.write(job.common.report);
   if (!job.common.quiet) {
     for (const FrameRemark& skipped : sequence.skipped) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "engine/matching/range_check.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/search/match_inputs.h"
 #include "engine/matching/vertical_range.h"
@@ -36,7 +37,24 @@ MatchOptions PairMatcher::match(const Photograph& left, const Photograph& right,
                                 MatchReport* report) const {
   const auto ready = ready_for(with_found_ranges(options_, left, right, execution_));
   ready->matcher.match(left, right, request, maps, report);
+  if (report != nullptr) {
+    check_range(left, right, maps, ready->options, *report);
+  }
   return ready->options;
+}
+
+void PairMatcher::check_range(const Photograph& left, const Photograph& right,
+                              const DisparityMaps& maps, const MatchOptions& used,
+                              MatchReport& report) const {
+  const bool is_found = options_.disparities_auto;
+  const MatchesAtEnds matches = matches_at_ends(maps, used);
+  if (!may_be_cut(matches, used, is_found)) {
+    return;
+  }
+  const CutRange cut = look_beyond(matches, left, right, used, execution_);
+  if (cut.any()) {
+    report.remarks.push_back(cut_range_remark(cut, used.disparities, is_found));
+  }
 }
 
 MatchOptions PairMatcher::match_several(const Photograph& reference,

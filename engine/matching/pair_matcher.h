@@ -28,7 +28,8 @@ class PairMatcher {
   explicit PairMatcher(const MatchOptions& options, Execution& execution = default_execution());
 
   /// StereoMatcher::match() with the ranges of this pair; returns the options that it used. Throws
-  /// as that does, and Error where no range is found.
+  /// as that does, and Error where no range is found. With `report` it also examines the map of the
+  /// reference, and MatchReport::remarks says whether the range is too narrow.
   MatchOptions match(const Photograph& left, const Photograph& right, const MatchRequest& request,
                      DisparityMaps& maps, MatchReport* report = nullptr) const;
 
@@ -52,6 +53,9 @@ class PairMatcher {
     MatchOptions options;
     StereoMatcher matcher;
   };
+  /// Remarks on a range that is too narrow.
+  void check_range(const Photograph& left, const Photograph& right, const DisparityMaps& maps,
+                   const MatchOptions& used, MatchReport& report) const;
   [[nodiscard]] std::shared_ptr<const Ready> ready_for(const MatchOptions& options) const;
 
   MatchOptions options_;

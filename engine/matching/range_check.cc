@@ -105,6 +105,12 @@ CutRange look_beyond(const MatchesAtEnds& matches, const Photograph& left, const
       .share_above = beyond.above};
 }
 
+Remark cut_range_remark(const CutRange& cut, DisparityRange range, bool is_found) {
+  return {Remark::Kind::kWarning, "range",
+          fmt::format("{}; {}", to_text(cut, range),
+                      is_found ? "give `disparities` MIN:MAX" : kCutRangeAdvice)};
+}
+
 std::string to_text(const CutRange& cut, DisparityRange range) {
   std::string text;
   if (cut.below) {

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
 #include "engine/image/disparity_range.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/remark.h"
 
 namespace vantage {
 
@@ -45,6 +47,13 @@ bool may_be_cut(const MatchesAtEnds& matches, const MatchOptions& options, bool 
 /// beyond, the matches at the end decide. Thread rule: may be called concurrently.
 CutRange look_beyond(const MatchesAtEnds& matches, const Photograph& left, const Photograph& right,
                      const MatchOptions& options, Execution& execution);
+
+/// Advice at the end of a warning of a range that was given.
+inline constexpr std::string_view kCutRangeAdvice =
+    "give a wider `disparities`, or leave it out for auto";
+
+/// The warning: to_text() and advice. `is_found`: the range was estimated.
+Remark cut_range_remark(const CutRange& cut, DisparityRange range, bool is_found);
 
 /// "disparities above 49 seem to be left out: 11 % of the matches lie at that end".
 std::string to_text(const CutRange& cut, DisparityRange range);

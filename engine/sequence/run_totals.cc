@@ -17,6 +17,19 @@ void add_range_check(SequenceReport& report, const FrameSlot& slot) {
   }
 }
 
+void add_match_remarks(SequenceReport& report, const FrameSlot& slot) {
+  for (const Remark& remark : slot.match.remarks) {
+    const auto known = std::ranges::find_if(report.match_remarks, [&](const MatchRemark& one) {
+      return one.remark.kind == remark.kind && one.remark.subject == remark.subject;
+    });
+    if (known == report.match_remarks.end()) {
+      report.match_remarks.push_back({remark, slot.frame, 1});
+    } else {
+      ++known->frames;
+    }
+  }
+}
+
 void add_stage(SequenceReport& report, std::string_view name, double seconds) {
   const auto known = std::ranges::find(report.stages, name, &SequenceStage::name);
   if (known != report.stages.end()) {
@@ -39,6 +52,7 @@ void add_frame(SequenceReport& report, const FrameSlot& slot) {
       report.reuse.add(*slot.match.searched_share);
     }
     add_range_check(report, slot);
+    add_match_remarks(report, slot);
   }
   for (const auto& times : {slot.match.stages, slot.times}) {
     for (const StageTime& stage : times) {

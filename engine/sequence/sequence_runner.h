@@ -11,6 +11,7 @@
 #include "engine/matching/range_check.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/rectification/rectifier.h"
+#include "engine/remark.h"
 #include "engine/reprojection/map_camera.h"
 #include "engine/sequence/journal/run_journal.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -42,6 +43,13 @@ struct FrameRemark {
   std::string text;
 };
 
+/// A remark of matching: of the first frame that has one of its kind and subject.
+struct MatchRemark {
+  Remark remark;
+  int frame = 0;
+  int frames = 0;  ///< that have one
+};
+
 /// What frames took from the frames before them, with TemporalOptions::reuse.
 struct ReuseReport {
   int frames = 0;           ///< of images that are large enough
@@ -64,7 +72,8 @@ struct SequenceReport {
   std::optional<int> videos_from;
   std::vector<FrameRemark> skipped;
   std::vector<FrameRemark> remarks;  ///< frames that repeat the previous one, gaps in time, …
-  int frames_maybe_cut = 0;          ///< frames whose search range may be too narrow
+  std::vector<MatchRemark> match_remarks;
+  int frames_maybe_cut = 0;  ///< frames whose search range may be too narrow
   /// The worst check of such a frame: the largest share beyond the range. Only the first few frames
   /// that are matched are checked, so it may depend on timing.
   std::optional<CutRange> cut;

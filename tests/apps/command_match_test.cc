@@ -123,9 +123,10 @@ TEST_F(MatchCommand, ReportHasTheKeysOfTheContract) {
   for (const auto& [key, value] : report.items()) {
     keys.push_back(key);
   }
-  EXPECT_THAT(keys, ElementsAre("command", "version", "settings", "plan", "isa", "threads",
-                                "seconds", "cells", "cells_per_second", "peak_memory_bytes",
-                                "candidates_per_pixel", "binding", "memory", "tuning", "results"));
+  EXPECT_THAT(keys,
+              ElementsAre("command", "version", "settings", "plan", "isa", "threads", "seconds",
+                          "cells", "cells_per_second", "peak_memory_bytes", "warnings", "notes",
+                          "candidates_per_pixel", "binding", "memory", "tuning", "results"));
   EXPECT_EQ(report["command"], "match");
   EXPECT_EQ(report["settings"]["disparities"], "0:9");
   EXPECT_EQ(report["threads"], 2);

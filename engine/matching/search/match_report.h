@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/matching/search/coarse_to_fine/search_report.h"
+#include "engine/remark.h"
 
 namespace vantage {
 
@@ -20,7 +23,14 @@ struct MatchReport : SearchReport {
   std::vector<StageTime> stages;
   /// With MatchRequest::previous: the share of tiles that were searched, of the map with more.
   std::optional<double> searched_share;
+  std::vector<Remark> remarks;
 
+  void warn(std::string_view subject, std::string text) {
+    remarks.push_back({Remark::Kind::kWarning, subject, std::move(text)});
+  }
+  void note(std::string_view subject, std::string text) {
+    remarks.push_back({Remark::Kind::kNote, subject, std::move(text)});
+  }
   /// Counts a map of which this share of tiles was searched.
   void count_searched(double share) {
     searched_share = std::max(searched_share.value_or(0), share);
@@ -28,6 +38,7 @@ struct MatchReport : SearchReport {
   /// Adds the work of another map of the same images; keeps the first plan.
   void add(const MatchReport& other) {
     stages.insert(stages.end(), other.stages.begin(), other.stages.end());
+    remarks.insert(remarks.end(), other.remarks.begin(), other.remarks.end());
     if (plan.passes.empty()) {
       plan = other.plan;
     }
