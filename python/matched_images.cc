@@ -9,8 +9,9 @@ namespace {
 
 Photograph borrowed(const Photograph& photograph) {
   return std::visit(
-      [](const auto& image) {
-        return Photograph{std::remove_cvref_t<decltype(image)>::borrowed(image.view())};
+      [&](const auto& image) {
+        return Photograph{std::remove_cvref_t<decltype(image)>::borrowed(image.view()),
+                          photograph.origin};
       },
       photograph.pixels);
 }

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "engine/image/image.h"
+#include "engine/image/photograph_origin.h"
 
 namespace vantage {
 
@@ -11,6 +12,7 @@ namespace vantage {
 /// alpha). 8-bit values span 0..255, 16-bit 0..65535, float 0..1, all finite.
 struct Photograph {
   std::variant<Image<std::uint8_t>, Image<std::uint16_t>, Image<float>> pixels;
+  PhotographOrigin origin = {};
 
   [[nodiscard]] int width() const {
     return std::visit([](const auto& image) { return image.width(); }, pixels);

@@ -129,6 +129,7 @@ void unpack_image(const Photograph& packed, StereoPacking packing, bool second, 
                             packed.width(), packed.height(),
                             packing.above_below ? "height" : "width"));
   }
+  image.origin = packed.origin;
   std::visit(
       [&]<typename T>(const Image<T>& pixels) {
         unpack_half(half_of(pixels.view(), packing.above_below, second), packing,

@@ -27,7 +27,9 @@ Image<T> transpose(ImageView<const T> image) {
 
 Photograph transposed(const Photograph& photograph) {
   return std::visit(
-      []<typename T>(const Image<T>& image) { return Photograph{transpose<T>(image.view())}; },
+      [&]<typename T>(const Image<T>& image) {
+        return Photograph{transpose<T>(image.view()), photograph.origin};
+      },
       photograph.pixels);
 }
 

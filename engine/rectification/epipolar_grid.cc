@@ -184,7 +184,7 @@ void EpipolarGrid::sample(const Photograph& other, int along, int down, Photogra
             remap_row(from, x_px.data(), y_px.data(), y, to);
           }
         });
-        result.pixels = std::move(to);
+        result = {std::move(to), other.origin};
       },
       other.pixels);
 }

@@ -89,6 +89,7 @@ void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
                             source.height(), photograph_size_.width_px,
                             photograph_size_.height_px));
   }
+  result.origin = source.origin;
   std::visit(
       [&]<typename T>(const Image<T>& from) {
         Image<T>& to = pixels_of<T>(result);
@@ -129,9 +130,7 @@ Photograph undistorted(Photograph source, const Camera& lens, Execution& executi
             remap_row(from, x_px.data(), y_px.data(), y, to);
           }
         });
-        Photograph result;
-        result.pixels = std::move(to);
-        return result;
+        return Photograph{std::move(to), source.origin};
       },
       source.pixels);
 }

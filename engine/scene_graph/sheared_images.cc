@@ -62,7 +62,7 @@ Photograph sheared(const Photograph& photograph, const Shear& shear, Execution& 
             remap_row(from, x_px.data(), y_px.data(), y, to);
           }
         });
-        result.pixels = std::move(to);
+        result = {std::move(to), photograph.origin};
       },
       photograph.pixels);
   return result;

@@ -101,6 +101,17 @@ class JpegReader {
     return {static_cast<int>(decoder_.output_width), static_cast<int>(decoder_.output_height),
             decoder_.num_components == 1 ? 1 : 3};
   }
+  /// Of the first component: luminance. Valid from begin() on, which reads the tables of all scans
+  /// of a progressive file.
+  [[nodiscard]] double step_of_low_frequencies() const {
+    const JQUANT_TBL* table = decoder_.comp_info[0].quant_table;
+    constexpr std::array<int, 5> kLowest = {1, 8, 16, 9, 2};  // of rows of eight, without 0
+    double sum = 0;
+    for (const int place : kLowest) {
+      sum += table == nullptr ? 0 : table->quantval[place];
+    }
+    return sum / static_cast<double>(kLowest.size());
+  }
   [[nodiscard]] bool is_cmyk() const { return decoder_.out_color_space == JCS_CMYK; }
   [[nodiscard]] int rows_read() const { return static_cast<int>(decoder_.output_scanline); }
 
@@ -146,7 +157,9 @@ Photograph decode_jpeg(const FileBytes& file, Photograph& memory) {
   if (!reader.read(image, cmyk_row.empty() ? nullptr : cmyk_row.data())) {
     fail(file, reader);
   }
-  return {std::move(image)};
+  return {std::move(image),
+          {.coding =
+               LossyCoding{.codec = "JPEG", .step_grey_levels = reader.step_of_low_frequencies()}}};
 }
 
 }  // namespace vantage

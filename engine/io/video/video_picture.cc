@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/io/video/frame_quantisation.h"
 
 extern "C" {
 #include <libavutil/frame.h>
@@ -14,15 +15,18 @@ extern "C" {
 namespace vantage {
 
 VideoPicture::VideoPicture(const AVFrame& frame, std::shared_ptr<PictureConverters> converters,
-                           std::string name)
-    : frame_(av_frame_clone(&frame)), converters_(std::move(converters)), name_(std::move(name)) {
+                           std::string name, std::string lossy_codec)
+    : frame_(av_frame_clone(&frame)),
+      converters_(std::move(converters)),
+      name_(std::move(name)),
+      lossy_codec_(std::move(lossy_codec)) {
   if (frame_ == nullptr) {
     throw std::bad_alloc();
   }
 }
 
 VideoPicture VideoPicture::share() const {
-  return is_empty() ? VideoPicture() : VideoPicture(*frame_, converters_, name_);
+  return is_empty() ? VideoPicture() : VideoPicture(*frame_, converters_, name_, lossy_codec_);
 }
 
 std::size_t VideoPicture::bytes() const {
@@ -36,6 +40,10 @@ std::size_t VideoPicture::bytes() const {
 void VideoPicture::convert(Photograph& photograph) {
   const LibavFrame frame = std::move(frame_);
   const auto converter = converters_->borrow();
+  photograph.origin = {};
+  if (!lossy_codec_.empty()) {
+    photograph.origin.coding = coding_of_frame(*frame, lossy_codec_);
+  }
   try {
     converter->convert(*frame, photograph);
   } catch (const Error& error) {

@@ -20,9 +20,10 @@ class VideoPicture {
  public:
   /// Holds nothing.
   VideoPicture() = default;
-  /// Refers to the pixels of `frame`. `name` is for messages: "a.mp4: frame 12".
+  /// Refers to the pixels of `frame`. `name` is for messages: "a.mp4: frame 12". `lossy_codec`: as
+  /// LossyCoding has it; empty: lossless.
   VideoPicture(const AVFrame& frame, std::shared_ptr<PictureConverters> converters,
-               std::string name);
+               std::string name, std::string lossy_codec = {});
 
   [[nodiscard]] bool is_empty() const { return frame_ == nullptr; }
   /// Another reference to the same pixels.
@@ -39,6 +40,7 @@ class VideoPicture {
   LibavFrame frame_;
   std::shared_ptr<PictureConverters> converters_;
   std::string name_;
+  std::string lossy_codec_;
 };
 
 }  // namespace vantage

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/io/video/frame_quantisation.h"
 #include "engine/io/video/video_decoder.h"
 #include "engine/io/video/video_io.h"
 #include "engine/io/video/video_timing.h"
@@ -38,6 +39,7 @@ struct VideoReader::State {
 
   std::filesystem::path path;
   std::unique_ptr<VideoDecoder> decoder;
+  std::string lossy_codec;  ///< empty: lossless
   int width = 0;
   int height = 0;
   VideoTiming timing;
@@ -183,6 +185,7 @@ VideoReader::VideoReader(const std::filesystem::path& path)
   VideoDecoder& decoder = *state_->decoder;
   state_->width = decoder.stream().codecpar->width;
   state_->height = decoder.stream().codecpar->height;
+  state_->lossy_codec = lossy_codec_of(decoder.stream().codecpar->codec_id);
   state_->timing = examine_video_timing(decoder.input(), decoder.stream(), path);
 }
 
@@ -203,7 +206,8 @@ bool VideoReader::read(VideoPicture& picture) {
     return false;
   }
   picture = VideoPicture(state.decoder->frame(), state.converters,
-                         fmt::format("{}: frame {}", state.path.string(), state.frames_read - 1));
+                         fmt::format("{}: frame {}", state.path.string(), state.frames_read - 1),
+                         state.lossy_codec);
   return true;
 }
 

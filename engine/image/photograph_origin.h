@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace vantage {
+
+/// How a lossy codec rounded the pictures that it stored.
+struct LossyCoding {
+  std::string codec;  ///< "JPEG", or FFmpeg's name: "h264", "mpeg2video", "hevc"
+  /// Mean step of the transform's low frequencies in grey levels (0..255), as the codec states it,
+  /// for an orthonormal transform: a step q is an error of at most q² / 12 per pixel in the mean
+  /// square. JPEG: mean of the five lowest frequencies but the constant one, of luminance. H.264,
+  /// MPEG, VP9: from the mean QP of the picture. 0: not stated (HEVC, AV1 and others).
+  double step_grey_levels = 0;
+  int block_px = 8;  ///< side of its smallest blocks
+};
+
+/// What the file or stream of a photograph says about its values. Copies of a photograph and what
+/// is resampled from it keep it.
+struct PhotographOrigin {
+  /// The stored value that is white, where the file states another one than its type's largest, in
+  /// the unit of the pixels.
+  std::optional<double> white_level = {};
+  std::optional<LossyCoding> coding = {};  ///< empty: lossless, or not known
+};
+
+}  // namespace vantage
