@@ -293,7 +293,12 @@ int run_match(MatchJob& job, const Settings& settings) {
   }
   Execution& execution = tuned_execution ? *tuned_execution : work.execution;
 
-  const StereoMatcher matcher(job.match, execution);
+  MatchOptions options = job.match;
+  if (job.vertical && options.roi) {  // of the image before rows and columns were exchanged
+    options.roi = ImageRegion{options.roi->y_px, options.roi->x_px, options.roi->height_px,
+                              options.roi->width_px};
+  }
+  const StereoMatcher matcher(options, execution);
   Matched matched;
   SpaceOutputs space(job);
   compute_maps(job, settings, inputs, asked, matcher, space.requests(job), execution, report,

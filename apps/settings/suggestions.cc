@@ -73,9 +73,9 @@ const auto& option_answers() {
           "--disparities",
           "'vantage match --depth FILE' and 'vantage reproject' write depths in metres, with "
           "--cloud points"},
-      WordAnswer{{"resize", "scale", "downscale", "downsample", "resolution"},
-                 "--disparities",
-                 "images are matched at their size; resize them first"},
+      WordAnswer{{"resize", "downscale", "downsample", "resolution"},
+                 "--scale",
+                 "--scale 0.5 matches images of half the size"},
       WordAnswer{{"jobs", "cores", "workers", "nproc", "cpus", "num-threads", "nthreads", "j"},
                  "--threads",
                  "--threads N is the number of threads"},

@@ -128,6 +128,8 @@ constexpr Rule kMatchJobRules[] = {
     {kMatchJob, "volume", "unrectified",
      "--volume cannot be used with --unrectified: candidates differ by fractions from pixel to "
      "pixel"},
+    {kMatchJob, "roi | scale < 1", "unrectified",
+     "--{option} cannot be used with --unrectified: epipolar lines are those of whole images"},
     {kMatchJob, "posterior-mean | posterior-variance", "unrectified",
      "--posterior-mean and --posterior-variance cannot be used with --unrectified: candidates "
      "differ by fractions from pixel to pixel"},
@@ -162,6 +164,8 @@ constexpr Rule kMatchJobRules[] = {
      "--{option} cannot be used with {chosen}: only the aggregation bayes has p(d)"},
     {kMatchJob, "posterior-variance | posterior-mean", "disparities-y",
      "--{option} cannot be used with --disparities-y: p is one of displacements"},
+    {kMatchJob, "volume | posterior-variance | posterior-mean", "roi | scale < 1",
+     "--{option} cannot be used with --roi and --scale: it is of whole images"},
     {kMatchJob, "cyclopean | cyclopean-occlusion", "selection != symmetric | baselines | more",
      "--{option} is given, expected it with --selection symmetric only"},
 };

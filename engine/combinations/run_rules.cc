@@ -38,6 +38,10 @@ constexpr Rule kSequenceRules[] = {
     {kSequence, "save posterior-mean | save posterior-variance", "unrectified",
      "save posterior-mean and posterior-variance cannot be used with unrectified: candidates "
      "differ by fractions from pixel to pixel"},
+    {kSequence, "save posterior-mean | save posterior-variance", "roi | scale < 1",
+     "save has {name} with roi or scale, expected it of whole images only"},
+    {kSequence, "roi | scale < 1", "unrectified",
+     "{option} cannot be used with unrectified: epipolar lines are those of whole images"},
     {kSequence, "temporal-prior > 0", "unrectified",
      "temporal-prior cannot be used with unrectified: candidates differ by fractions from pixel to "
      "pixel"},

@@ -13,6 +13,8 @@ namespace vantage {
 struct Photograph {
   std::variant<Image<std::uint8_t>, Image<std::uint16_t>, Image<float>> pixels;
   PhotographOrigin origin = {};
+  /// 255 where a pixel shows no scene (image/left_out.h); empty: all do.
+  Mask left_out = {};
 
   [[nodiscard]] int width() const {
     return std::visit([](const auto& image) { return image.width(); }, pixels);

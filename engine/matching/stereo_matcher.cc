@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "engine/error.h"
 #include "engine/matching/match_runner.h"
+#include "engine/matching/region/matched_part.h"
 
 namespace vantage {
 namespace {
@@ -34,12 +37,43 @@ MatchCall several_call(const Photograph& reference, std::span<const OtherView> o
   return call;
 }
 
+/// A call with parts of the images of `whole`.
+struct CallOfPart {
+  CallOfPart(const MatchCall& whole, const ResolvedMatchOptions& options, Execution& execution)
+      : part(options,
+             {whole.images.front().photograph->width(), whole.images.front().photograph->height()},
+             places_of(whole), whole.reference_side),
+        call(whole) {
+    photographs.reserve(whole.images.size());
+    for (SearchedPhotograph& image : call.images) {
+      photographs.push_back(part.of(*image.photograph, execution));
+      image.photograph = &photographs.back();
+    }
+  }
+
+  static std::vector<double> places_of(const MatchCall& whole) {
+    if (whole.baselines.empty()) {
+      return {0, 1};
+    }
+    std::vector<double> places;
+    for (const SearchedPhotograph& image : whole.images) {
+      places.push_back(image.place);
+    }
+    return places;
+  }
+
+  MatchedPart part;
+  std::vector<Photograph> photographs;
+  MatchCall call;
+};
+
 }  // namespace
 
 StereoMatcher::StereoMatcher(const MatchOptions& options, Execution& execution)
     : in_force_(checked(options)),
+      of_part_(options_of_part(options)),
       execution_(execution),
-      runner_(std::make_unique<MatchRunner>(in_force_, execution)) {}
+      runner_(std::make_unique<MatchRunner>(of_part_, execution)) {}
 
 StereoMatcher::~StereoMatcher() = default;
 
@@ -51,7 +85,7 @@ void StereoMatcher::match(const Photograph& left, const Photograph& right,
   if (!request.prior.empty() && in_force_.disparities_y) {
     throw UsageError("there is a prior beside disparities-y, expected a search along rows only");
   }
-  runner_->run(call, request, maps, report);
+  run(call, request, maps, report);
 }
 
 void StereoMatcher::match_several(const Photograph& reference, std::span<const OtherView> others,
@@ -59,7 +93,43 @@ void StereoMatcher::match_several(const Photograph& reference, std::span<const O
                                   MatchReport* report) const {
   const MatchCall call = several_call(reference, others);
   require_usable(request.prior, reference);
-  runner_->run(call, request, maps, report);
+  run(call, request, maps, report);
+}
+
+void StereoMatcher::run(const MatchCall& call, const MatchRequest& request, DisparityMaps& maps,
+                        MatchReport* report) const {
+  if (!in_force_.is_of_part()) {
+    runner_->run(call, request, maps, report);
+    return;
+  }
+  if (!request.volumes.empty()) {
+    throw UsageError("there is a volume with roi or scale, expected one of whole images");
+  }
+  const CallOfPart part(call, in_force_, execution_);
+  const DisparityMap left_prior_px = part.part.of_prior(request.prior.left_px);
+  const DisparityMap right_prior_px = part.part.of_prior(request.prior.right_px);
+  MatchRequest request_of_part = request;
+  request_of_part.prior.left_px = left_prior_px.view();
+  request_of_part.prior.right_px = right_prior_px.view();
+  DisparityMaps found;
+  runner_->run(part.call, request_of_part, found, report);
+  const bool is_left_for_later =
+      request.previous != nullptr && request.deferred != nullptr && request.deferred->is_pending;
+  const bool is_pair = call.baselines.empty();
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    if (!is_left_for_later && (is_pair ? request.wants(side) : side == call.reference_side)) {
+      const std::size_t image = is_pair ? index_of(side) : 0;
+      part.part.bring_back(found.of(side), part.photographs[image], image,
+                           *call.images[image].photograph, execution_, maps.of(side));
+    }
+  }
+}
+
+std::vector<scheduler::ChainPlan> StereoMatcher::plans(
+    const MatchCall& call, std::span<const ExecutionOptions> executions) const {
+  return in_force_.is_of_part()
+             ? runner_->plans(CallOfPart(call, in_force_, execution_).call, executions)
+             : runner_->plans(call, executions);
 }
 
 scheduler::ChainPlan StereoMatcher::plan(const Photograph& left, const Photograph& right) const {
@@ -69,12 +139,12 @@ scheduler::ChainPlan StereoMatcher::plan(const Photograph& left, const Photograp
 std::vector<scheduler::ChainPlan> StereoMatcher::plans(
     const Photograph& left, const Photograph& right,
     std::span<const ExecutionOptions> executions) const {
-  return runner_->plans(pair_call(left, right), executions);
+  return plans(pair_call(left, right), executions);
 }
 
 scheduler::ChainPlan StereoMatcher::plan_several(const Photograph& reference,
                                                  std::span<const OtherView> others) const {
-  return runner_->plans(several_call(reference, others), {&execution_.options(), 1}).front();
+  return plans(several_call(reference, others), {&execution_.options(), 1}).front();
 }
 
 void StereoMatcher::add_memory_use(MemoryUse& use) const { runner_->add_memory_use(use); }

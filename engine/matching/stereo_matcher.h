@@ -17,6 +17,7 @@
 namespace vantage {
 
 class MatchRunner;
+struct MatchCall;
 
 /// Computes disparity maps of rectified pairs (EQUATIONS §1, §3, §5).
 ///
@@ -36,7 +37,8 @@ class StereoMatcher {
   /// Error when sizes differ, no pixel has a candidate in the range or the machine has too little
   /// memory, UsageError for a prior's
   /// weight out of range, a prior with a vertical search, or a volume that cannot be had: of a
-  /// level that the images do not have, or with a reduced search-size.
+  /// level that the images do not have, with a reduced search-size, or of a part of the images
+  /// (roi, scale).
   void match(const Photograph& left, const Photograph& right, const MatchRequest& request,
              DisparityMaps& maps, MatchReport* report = nullptr) const;
 
@@ -69,7 +71,13 @@ class StereoMatcher {
   [[nodiscard]] const ResolvedMatchOptions& in_force() const { return in_force_; }
 
  private:
+  void run(const MatchCall& call, const MatchRequest& request, DisparityMaps& maps,
+           MatchReport* report) const;
+  [[nodiscard]] std::vector<scheduler::ChainPlan> plans(
+      const MatchCall& call, std::span<const ExecutionOptions> executions) const;
+
   const ResolvedMatchOptions in_force_;
+  const ResolvedMatchOptions of_part_;  ///< those of the runner
   Execution& execution_;
   std::unique_ptr<MatchRunner> runner_;
 };

@@ -15,6 +15,9 @@ ResolvedMatchOptions along_lines(const MatchOptions& options) {
     throw UsageError("disparities is auto, expected the range that the images suggest");
   }
   ResolvedMatchOptions resolved = options.in_force();
+  if (resolved.is_of_part()) {
+    throw UsageError("roi and scale cannot be used along epipolar lines, expected whole images");
+  }
   require_abilities(search_of(resolved, {.along_lines = true}).abilities, resolved);
   resolved.parameters.window_levels = 0;
   return resolved;

@@ -35,6 +35,31 @@ void add_method_settings(Settings& settings, MatchOptions& options) {
       "--method, --aggregate, --disparities-y: none");
 }
 
+void add_part_settings(Settings& settings, MatchOptions& options) {
+  Setting& roi = settings.add(
+      "roi", "X,Y,W,H",
+      "Match only this rectangle of the left image (with several images: of the reference): first "
+      "column and row, width and height; pixels outside are unknown. none: the whole image");
+  roi.set = [&options](const SettingValue& value) {
+    constexpr std::string_view kExpected = "X,Y,W,H in whole pixels, such as 100,50,640,480";
+    options.roi.reset();
+    if (!is_word(value, "none")) {
+      options.roi = from_parts(value, ',', 4, kExpected, [](const auto& parts) {
+        return std::optional(ImageRegion{to_integer(parts[0]), to_integer(parts[1]),
+                                         to_integer(parts[2]), to_integer(parts[3])});
+      });
+    }
+  };
+  roi.get = [&options]() -> SettingValue {
+    return options.roi ? fmt::format("{},{},{},{}", options.roi->x_px, options.roi->y_px,
+                                     options.roi->width_px, options.roi->height_px)
+                       : "none";
+  };
+  settings.number("scale", options.scale, "S",
+                  "Match images of S times the size, above 0 to 1, and bring maps back to the "
+                  "pixels of the given ones; --disparities and all files are in these");
+}
+
 /// Name → value in force of all parameters that are read.
 SettingValue resolved_parameters(const MatchOptions& options) {
   MatchOptions in_force = options.fully_resolved();
@@ -107,6 +132,7 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
            : options.disparities_y    ? to_text(*options.disparities_y)
                                       : "none";
   };
+  add_part_settings(settings, options);
   add_method_settings(settings, options);
   add_parameter_settings(settings, options);
   settings.show_resolved([&options] { return resolved_parameters(options); });

@@ -63,6 +63,23 @@ void validate_candidates(DisparityRange x, const std::optional<DisparityRange>& 
   }
 }
 
+void validate_part(const std::optional<ImageRegion>& roi, double scale) {
+  if (!(scale > 0 && scale <= 1)) {
+    throw UsageError(fmt::format("scale is {}, expected a number above 0, at most 1", scale));
+  }
+  if (!roi) {
+    return;
+  }
+  const auto [x, y, width, height] = *roi;
+  const auto is_length = [](int px, int min) { return px >= min && px <= kMaxDisparity; };
+  if (!is_length(x, 0) || !is_length(y, 0) || !is_length(width, 1) || !is_length(height, 1)) {
+    throw UsageError(
+        fmt::format("roi is {},{},{},{}, expected X,Y,W,H with X and Y from 0, W and "
+                    "H from 1, to {}",
+                    x, y, width, height, kMaxDisparity));
+  }
+}
+
 /// The values in force by option.
 OptionValues values_of(const MatchOptions& options, const MethodParameters& in_force,
                        const RefinementOptions& of_maps) {
@@ -96,6 +113,10 @@ OptionValues values_of(const MatchOptions& options, const MethodParameters& in_f
   if (options.raw) {
     values.set("raw", 1);
   }
+  if (options.roi) {
+    values.set("roi", "given", true);
+  }
+  values.set("scale", options.scale, options.scale != 1);
   return values;
 }
 
@@ -139,6 +160,7 @@ void MatchOptions::validate() const {
   // Counts the candidates, which may be too many for an int until they are checked.
   const RefinementOptions of_maps = resolved_refinement();
   require_within_limits(of_maps);
+  validate_part(roi, scale);
   refuse_combinations(CombinationScope::kMatch, values_of(*this, in_force, of_maps));
   require_read(parameters, in_force, chosen());
 }
@@ -198,7 +220,9 @@ ResolvedMatchOptions MatchOptions::in_force() const {
   return {.disparities = disparities,
           .disparities_y = disparities_y,
           .parameters = resolved(),
-          .refinement = raw ? std::nullopt : std::optional(resolved_refinement())};
+          .refinement = raw ? std::nullopt : std::optional(resolved_refinement()),
+          .roi = roi,
+          .scale = scale};
 }
 
 MatchOptions MatchOptions::fully_resolved() const {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/image/disparity_range.h"
+#include "engine/image/image_region.h"
 #include "engine/image/side.h"
 #include "engine/matching/options/method_rules.h"
 #include "engine/refinement/refinement_options.h"
@@ -25,6 +26,11 @@ struct ResolvedMatchOptions {
   std::optional<DisparityRange> disparities_y;
   MethodParameters parameters;
   std::optional<RefinementOptions> refinement;  ///< empty: maps keep the winners
+  std::optional<ImageRegion> roi = std::nullopt;
+  double scale = 1;
+
+  /// Whether less than the images is matched, or smaller ones are.
+  [[nodiscard]] bool is_of_part() const { return roi.has_value() || scale < 1; }
 };
 
 /// Everything that determines a pair's disparity maps. Defaults are those of the command line,
@@ -43,6 +49,11 @@ struct MatchOptions {
   std::optional<DisparityRange> disparities_y;
   /// As disparities_auto, for `disparities_y` (set) and find_vertical_range().
   bool disparities_y_auto = false;
+  /// Pixels of the left image, or of the reference of several images, that get disparities; all
+  /// others are unknown, as are pixels of the right image without a partner there. Empty: all.
+  std::optional<ImageRegion> roi;
+  /// Above 0, at most 1: images are matched at this size, and maps brought back to theirs.
+  double scale = 1;
   MethodOverrides parameters;
   Side reference = Side::kLeft;  ///< whose map results, where no MatchRequest names others
   /// Winner-take-all only: no refinement (sub-pixel stays as set above).

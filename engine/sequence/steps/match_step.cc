@@ -2,6 +2,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/matching/region/matched_part.h"
 #include "engine/matching/search/epipolar/rectified_map.h"
 #include "engine/matching/search_table.h"
 #include "engine/sequence/past/frame_reuse.h"
@@ -139,8 +140,14 @@ class MatchStep final : public RunStep {
 /// What matching one frame stores. level_bytes: see level_bands().
 SearchPlan match_plan(const SequenceOptions& options, const PairShape& shape,
                       std::size_t level_bytes = kDefaultLevelBytes) {
-  return search_plan(options.match.in_force(),
-                     {.image = {shape.source.width_px, shape.source.height_px},
+  std::vector<double> places = {0, 1};
+  for (std::size_t k = 1; k < options.baselines.size(); ++k) {
+    places.push_back(options.baselines[k] / options.baselines.front());
+  }
+  const MatchedPart part(options.match.in_force(), {shape.source.width_px, shape.source.height_px},
+                         places);
+  return search_plan(options_of_part(options.match),
+                     {.image = part.extent(),
                       .channels = shape.channels,
                       .baselines = options.baselines,
                       .along_lines = options.unrectified != UnrectifiedSearch::kNone,
