@@ -12,6 +12,7 @@ constexpr std::string_view kTools = "Quality, speed and other programs";
 constexpr std::string_view kBook = "Scharstein's book";
 
 constexpr std::array kCommands = {
+    Command{"check", "What a pair or film is like, and the command to type", command_check, kPairs},
     Command{"match", "Disparity maps of a rectified pair", command_match, kPairs},
     Command{"synth", "New views of a rectified pair", command_synth, kPairs},
     Command{"view", "A web page that renders new views of a pair", command_view, kPairs},

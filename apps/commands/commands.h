@@ -28,6 +28,7 @@ inline constexpr int kExitInterrupted = 130;
 /// All subcommands, in the order of --help; those of a group stand together.
 std::span<const Command> commands();
 
+int command_check(const Arguments& arguments);
 int command_match(const Arguments& arguments);
 int command_synth(const Arguments& arguments);
 int command_view(const Arguments& arguments);

@@ -1,0 +1,124 @@
+#include "apps/match/check_job.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "apps/commands/commands.h"
+#include "apps/inputs/kitti_cameras_choice.h"
+#include "apps/inputs/sampled_matches.h"
+#include "apps/process/child_process.h"
+#include "apps/process/command_work.h"
+#include "apps/process/outputs.h"
+#include "apps/reports/examination_report.h"
+#include "engine/error.h"
+#include "engine/jobs/sequence_session.h"
+
+namespace vantage::apps {
+namespace {
+
+/// The first, the middle and the last pair of a sequence.
+constexpr int kMaxExamined = 3;
+
+void check(CheckJob& job, const Settings& settings) {
+  if (job.calibration.empty()) {
+    settings.refuse_idle({"kitti-cameras"}, "without --calibration");
+  }
+  if (job.right.empty()) {
+    job.input.stereo = job.left;
+  } else {
+    settings.refuse_idle({"packing"}, "with two images or sequences");
+    job.input.left = job.left;
+    job.input.right = job.right;
+  }
+  job.input.validate();
+  job.common.execution.validate();
+  FileChecks files(settings);
+  check_common_files(job.common, files);
+}
+
+/// The command that makes maps of what was checked, or rectifies it first.
+std::string command_of(const CheckJob& job, const Settings& settings, const CheckedInput& checked) {
+  const bool is_exchanged = checked.looks_exchanged();
+  const std::string left = shell_word(is_exchanged ? job.right : job.left);
+  const std::string right = shell_word(is_exchanged ? job.left : job.right);
+  std::string text;
+  if (job.right.empty()) {
+    text = fmt::format("vantage run --stereo {} --packing {} -o results", shell_word(job.left),
+                       settings.values()["packing"].get<std::string>());
+  } else if (checked.is_unrectified() && job.calibration.empty()) {
+    text = fmt::format("vantage rectify {} {} -o rectified", left, right);
+  } else if (checked.pair_count == 1) {
+    text = fmt::format("vantage match {} {} -o disparity.pfm", left, right);
+  } else {
+    text = fmt::format("vantage run --left {} --right {} -o results", left, right);
+  }
+  return job.calibration.empty() ? text : text + " --calibration " + shell_word(job.calibration);
+}
+
+/// Of a match of the pair, or of a run of all pairs.
+std::size_t memory_bytes(const CheckJob& job, const CheckedInput& checked,
+                         const SequenceSession& session, const FramePair& pair) {
+  SequenceOptions options = job.sequence;
+  options.match.disparities = *checked.disparities();
+  options.match.disparities_auto = false;
+  const auto in_flight = checked.pair_count == 1 ? std::optional(1) : std::nullopt;
+  return plan_memory(options, {in_flight, std::nullopt}, session.shape, pair, job.common.execution)
+      .total_bytes;
+}
+
+}  // namespace
+
+int run_check(CheckJob& job, const Settings& settings) {
+  check(job, settings);
+  CommandWork work(settings, job.common);
+  RunReport& report = work.report;
+  Execution& execution = work.execution;
+  SequenceSession session;
+  open_source(job, session);
+  std::optional<StereoCalibration> calibration;
+  if (!job.calibration.empty()) {
+    choose_kitti_cameras(settings, job.common, job.calibration, session.pairs->files(),
+                         job.kitti_cameras);
+    calibration = job.rig.read(job.calibration, job.kitti_cameras);
+  }
+  CheckedInput checked;
+  checked.pair_count = session.pairs->pair_count();
+  checked.threads = execution.executor().thread_count();
+  FramePair pair;
+  for (const int index : sampled_pairs(checked.pair_count, kMaxExamined)) {
+    report.timed_file_access("read", [&] { read_equal_pair(*session.pairs, index, pair); });
+    if (checked.pairs.empty()) {
+      prepare_pairs(job, calibration, false, pair, execution, session);
+    } else {
+      session.rectify(pair, execution);
+    }
+    ExaminedPair& examined = checked.pairs.emplace_back();
+    examined.index = index;
+    examined.name = session.pairs->describe(index);
+    examined.found = report.timed_compute("examine", [&] {
+      return examine_pair(pair.left, pair.right, job.sequence.match, execution);
+    });
+    for (const Remark& remark : examined.found.remarks) {
+      report.add_remark(remark);
+    }
+  }
+  checked.cameras = session.shape.cameras;
+  checked.is_rectified_here = session.shape.is_rectified_here;
+  if (checked.makes_sense()) {
+    checked.memory_bytes = memory_bytes(job, checked, session, pair);
+    checked.command = command_of(job, settings, checked);
+  }
+  report.set_results(examination_values(checked));
+  report.write(job.common.report);
+  if (!job.common.quiet) {
+    fmt::print("{}", examination_text(checked));
+  }
+  if (!checked.makes_sense()) {
+    throw Error(fmt::format("{}: a match makes no sense: {}", checked.pairs.front().name,
+                            checked.pairs.front().found.problems.front()));
+  }
+  return kExitDone;
+}
+
+}  // namespace vantage::apps

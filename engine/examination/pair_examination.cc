@@ -1,0 +1,68 @@
+#include "engine/examination/pair_examination.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "engine/error.h"
+#include "engine/image/side.h"
+#include "engine/matching/pair_matcher.h"
+#include "engine/matching/range_check.h"
+#include "engine/seconds_since.h"
+
+namespace vantage {
+namespace {
+
+/// With more of it in an image there is nothing to match.
+constexpr double kMaxTexturelessShare = 0.98;
+/// With fewer pixels matched a map is mostly fill.
+constexpr double kMinMatchedShare = 0.25;
+
+void try_match(const Photograph& left, const Photograph& right, const MatchOptions& options,
+               Execution& execution, PairExamination& examination) {
+  const auto start = std::chrono::steady_clock::now();
+  DisparityMaps maps;
+  MatchReport report;
+  const MatchOptions used =
+      PairMatcher(options, execution)
+          .match(left, right, {.left = true, .unmatched = true}, maps, &report);
+  examination.seconds = seconds_since(start);
+  examination.disparities = used.disparities;
+  examination.remarks = std::move(report.remarks);
+  examination.matched_share = 1 - matches_at_ends(maps, used).unmatched;
+  if (examination.matched_share < kMinMatchedShare) {
+    examination.problems.push_back(
+        fmt::format("only {:.0f} % of the pixels can be matched, expected at least {:.0f} %",
+                    100 * examination.matched_share, 100 * kMinMatchedShare));
+  }
+}
+
+}  // namespace
+
+PairExamination examine_pair(const Photograph& left, const Photograph& right,
+                             const MatchOptions& options, Execution& execution) {
+  if (left.width() != right.width() || left.height() != right.height()) {
+    throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
+                            left.width(), left.height(), right.width(), right.height()));
+  }
+  PairExamination examination;
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    const bool is_left = side == Side::kLeft;
+    ImageStatistics& image = examination.images[index_of(side)];
+    image = image_statistics(is_left ? left : right, 0, execution);
+    if (image.textureless_share > kMaxTexturelessShare) {
+      examination.problems.push_back(fmt::format("{:.1f} % of the {} image have no texture",
+                                                 100 * image.textureless_share,
+                                                 is_left ? "left" : "right"));
+    }
+  }
+  examination.rows = check_rectification(left, right);
+  try {
+    try_match(left, right, options, execution, examination);
+  } catch (const Error& error) {
+    examination.problems.emplace_back(error.what());
+  }
+  return examination;
+}
+
+}  // namespace vantage
