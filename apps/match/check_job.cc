@@ -25,6 +25,10 @@ void check(CheckJob& job, const Settings& settings) {
     settings.refuse_idle({"kitti-cameras"}, "without --calibration");
   }
   if (job.right.empty()) {
+    if (!job.input.packing) {
+      throw UsageError(
+          "RIGHT is missing; for pictures that hold both images give --packing, such as sbsl");
+    }
     job.input.stereo = job.left;
   } else {
     settings.refuse_idle({"packing"}, "with two images or sequences");
@@ -107,6 +111,8 @@ int run_check(CheckJob& job, const Settings& settings) {
   checked.is_rectified_here = session.shape.is_rectified_here;
   if (checked.makes_sense()) {
     checked.memory_bytes = memory_bytes(job, checked, session, pair);
+  }
+  if (checked.makes_sense() || checked.is_unrectified()) {
     checked.command = command_of(job, settings, checked);
   }
   report.set_results(examination_values(checked));

@@ -89,8 +89,10 @@ ImageStatistics image_statistics(const Photograph& photograph, double noise_grey
           count_below({squares_of(y - 1), squares_of(y), squares_of(y + 1)}, threshold);
     }
   });
-  ImageStatistics statistics{
-      .width_px = width, .height_px = height, .channels = photograph.channels()};
+  ImageStatistics statistics{.width_px = width,
+                             .height_px = height,
+                             .channels = photograph.channels(),
+                             .origin = photograph.origin};
   statistics.bits =
       std::visit([](const auto& image) { return static_cast<int>(8 * sizeof(*image.row(0))); },
                  photograph.pixels);

@@ -2,6 +2,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
+#include "engine/image/photograph_origin.h"
 
 namespace vantage {
 
@@ -10,6 +11,7 @@ struct ImageStatistics {
   int width_px = 0;
   int height_px = 0;
   int channels = 0;
+  PhotographOrigin origin = {};
   int bits = 0;            ///< of a stored value
   double mean_grey = 0;    ///< grey levels, 0..255
   double black_share = 0;  ///< at most 1 grey level

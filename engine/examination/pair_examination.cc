@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "engine/error.h"
 #include "engine/image/side.h"
@@ -15,18 +17,21 @@ namespace {
 
 /// With more of it in an image there is nothing to match.
 constexpr double kMaxTexturelessShare = 0.98;
+/// Larger pairs are tried at this size. Work is proportional to pixels and disparities.
+constexpr double kMaxTrialPixels = 4e6;
 /// With fewer pixels matched a map is mostly fill.
 constexpr double kMinMatchedShare = 0.25;
 
-void try_match(const Photograph& left, const Photograph& right, const MatchOptions& options,
+void try_match(const Photograph& left, const Photograph& right, MatchOptions options,
                Execution& execution, PairExamination& examination) {
+  options.scale = std::min(1.0, std::sqrt(kMaxTrialPixels / left.width() / left.height()));
   const auto start = std::chrono::steady_clock::now();
   DisparityMaps maps;
   MatchReport report;
   const MatchOptions used =
       PairMatcher(options, execution)
           .match(left, right, {.left = true, .unmatched = true}, maps, &report);
-  examination.seconds = seconds_since(start);
+  examination.seconds = seconds_since(start) / std::pow(options.scale, 3);
   examination.disparities = used.disparities;
   examination.remarks = std::move(report.remarks);
   examination.matched_share = 1 - matches_at_ends(maps, used).unmatched;

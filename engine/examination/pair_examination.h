@@ -25,7 +25,8 @@ struct PairExamination {
   std::vector<std::string> problems;  ///< why a match makes no sense, a line each; empty: it does
 };
 
-/// Examines a pair that is ready for matching, and matches it with `options`. Throws Error when
+/// Examines a pair that is ready for matching, and matches it with `options`, large images reduced
+/// to 4 megapixels; `seconds` are then estimated. Throws Error when
 /// sizes differ. Results other than `seconds` are identical for any `execution`. Thread rule: may
 /// be called concurrently.
 PairExamination examine_pair(const Photograph& left, const Photograph& right,
