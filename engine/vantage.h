@@ -8,6 +8,8 @@
 #include "engine/error.h"
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/image/image_region.h"
+#include "engine/image/left_out.h"
 #include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
 #include "engine/image/pixel_buffer.h"

@@ -45,6 +45,7 @@ void MatchResult::match(const PairMatcher& matcher, const std::vector<Photograph
                                          computed.maps, computed.report)
                    : images_.match(matcher, photographs, request, computed.maps, &computed.report);
   if (wanted.posterior) {
+    moments.erase(photographs[images_.reference(side)].left_out, execution_);
     computed.posterior = {moments.mean_px().copy(), moments.variance_px2().copy()};
   }
   computed.has = wanted;

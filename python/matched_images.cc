@@ -4,6 +4,9 @@
 
 #include <utility>
 
+#include "engine/image/black_border.h"
+#include "engine/image/scene_mask.h"
+
 namespace vantage::python {
 namespace {
 
@@ -11,15 +14,20 @@ Photograph borrowed(const Photograph& photograph) {
   return std::visit(
       [&](const auto& image) {
         return Photograph{std::remove_cvref_t<decltype(image)>::borrowed(image.view()),
-                          photograph.origin};
+                          photograph.origin, Mask::borrowed(photograph.left_out.view())};
       },
       photograph.pixels);
 }
 
 }  // namespace
 
-MatchedImages::MatchedImages(std::vector<PixelArray> arrays, std::vector<double> baselines)
-    : arrays_(std::move(arrays)), baselines_(std::move(baselines)) {
+MatchedImages::MatchedImages(std::vector<PixelArray> arrays, std::vector<double> baselines,
+                             std::array<std::shared_ptr<const Photograph>, 2> masks,
+                             bool finds_borders)
+    : arrays_(std::move(arrays)),
+      baselines_(std::move(baselines)),
+      masks_(std::move(masks)),
+      finds_borders_(finds_borders) {
   const std::size_t others = arrays_.size() - 1;
   if ((!baselines_.empty() || others > 1) && baselines_.size() != others) {
     throw UsageError(
@@ -41,6 +49,16 @@ std::vector<Photograph> MatchedImages::photographs() const {
   }
   for (const Photograph& photograph : own_) {
     photographs.push_back(borrowed(photograph));
+  }
+  const bool has_masks = masks_[0] != nullptr || masks_[1] != nullptr;
+  const bool has_borders = finds_borders_ && (may_have_black_border(photographs[0]) ||
+                                              may_have_black_border(photographs[1]));
+  if (has_masks || has_borders) {  // whose pixels get other values
+    photographs[0] = arrays_[0].copy();
+    photographs[1] = arrays_[1].copy();
+    const SceneMaskOptions options{.left = finds_borders_ ? "" : "none"};
+    leave_out_of_pair(options, {masks_[0].get(), masks_[1].get()}, nullptr, photographs[0],
+                      photographs[1]);
   }
   return photographs;
 }

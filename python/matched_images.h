@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "engine/vantage.h"
@@ -14,7 +16,9 @@ class MatchedImages {
  public:
   /// Arrays of the caller, read in place where their layout allows: two, or with `baselines` as
   /// many more as there are numbers, see StereoMatcher::match_several().
-  MatchedImages(std::vector<PixelArray> arrays, std::vector<double> baselines);
+  /// `masks`: pictures of the first two, black where they show no scene; null pointers: none.
+  MatchedImages(std::vector<PixelArray> arrays, std::vector<double> baselines,
+                std::array<std::shared_ptr<const Photograph>, 2> masks, bool finds_borders);
   /// A pair that nobody else can change.
   MatchedImages(Photograph left, Photograph right);
 
@@ -43,7 +47,9 @@ class MatchedImages {
   std::vector<PixelArray> arrays_;  ///< empty: `own_`
   std::vector<Photograph> own_;
   std::vector<double> baselines_;
-  std::vector<std::uint32_t> checksums_;  ///< of arrays_
+  std::array<std::shared_ptr<const Photograph>, 2> masks_;  ///< of arrays_
+  bool finds_borders_ = false;                              ///< of arrays_
+  std::vector<std::uint32_t> checksums_;                    ///< of arrays_
 };
 
 }  // namespace vantage::python

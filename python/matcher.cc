@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "python/arrays.h"
 #include "python/calls.h"
@@ -33,7 +34,17 @@ MatchedImages ImageArguments::images() const {
   for (const PixelArray& array : arrays) {
     array.warn_of_range();
   }
-  return {std::move(arrays), baselines};
+  std::array<std::shared_ptr<const Photograph>, 2> masks;
+  const bool is_none = py::isinstance<py::str>(mask) && py::str(mask).equal(py::str("none"));
+  for (const auto& [given, name, i] :
+       {std::tuple{&mask, "mask", 0}, std::tuple{&mask_right, "mask_right", 1}}) {
+    if (!given->is_none() && !(i == 0 && is_none)) {
+      masks[static_cast<std::size_t>(i)] =
+          std::make_shared<const Photograph>(Photograph{mask_from(*given, name)});
+    }
+  }
+  const bool finds_borders = mask.is_none() && mask_right.is_none();
+  return {std::move(arrays), baselines, std::move(masks), finds_borders};
 }
 
 Matcher::Matcher(const std::optional<StereoCalibration>& unrectified, bool on_rectified,
@@ -125,9 +136,10 @@ void bind_matcher(py::module_& module) {
       .def(py::init<const std::optional<StereoCalibration>&, bool, const py::dict&>())
       .def("compute",
            [](const Matcher& self, const py::object& left, const py::object& right,
-              const py::list& more, const std::vector<double>& baselines, bool bgr, bool other,
-              bool confidence, bool posterior) {
-             return self.compute({left, right, more, baselines, bgr},
+              const py::list& more, const std::vector<double>& baselines, bool bgr,
+              const py::object& mask, const py::object& mask_right, bool other, bool confidence,
+              bool posterior) {
+             return self.compute({left, right, more, baselines, bgr, mask, mask_right},
                                  {other, confidence, posterior});
            })
       .def("volume",

@@ -31,6 +31,8 @@ struct ImageArguments {
   pybind11::list more;            ///< of cameras on the same line
   std::vector<double> baselines;  ///< of all but the first; empty: a pair
   bool bgr = false;
+  pybind11::object mask = pybind11::none();  ///< array, None: borders are found, "none"
+  pybind11::object mask_right = pybind11::none();
 
   [[nodiscard]] MatchedImages images() const;
 };

@@ -74,6 +74,10 @@ SettingValue to_setting(const std::string& name, const py::handle& object) {
         value[1].is_number_integer()) {
       return fmt::format("{}:{}", value[0].get<long long>(), value[1].get<long long>());
     }
+    if (name == "roi" && value.is_array() && value.size() == 4) {
+      return fmt::format("{},{},{},{}", value[0].dump(), value[1].dump(), value[2].dump(),
+                         value[3].dump());
+    }
     const bool is_point = name == "principal-point" || name == "stereo-views";
     if (is_point && value.is_array() && value.size() == 2 && value[0].is_number() &&
         value[1].is_number()) {

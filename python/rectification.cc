@@ -50,6 +50,8 @@ RectifiedImages rectify(const Photograph& left, const Photograph& right,
   const auto apply = [&] {
     rectifier.apply(left, Side::kLeft, result.left, execution);
     rectifier.apply(right, Side::kRight, result.right, execution);
+    blacken_left_out(result.left);
+    blacken_left_out(result.right);
   };
   apply();
   if (!given) {

@@ -8,6 +8,7 @@
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/inputs/given_maps.h"
 #include "apps/inputs/kitti_cameras_choice.h"
+#include "apps/inputs/masked_images.h"
 #include "apps/inputs/rectification_check.h"
 #include "apps/reports/remarks.h"
 #include "engine/error.h"
@@ -15,6 +16,7 @@
 #include "engine/io/maps/map_io.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
+#include "engine/options/scene_mask_settings.h"
 #include "engine/rectification/stereo_calibration.h"
 
 namespace vantage::apps {
@@ -25,7 +27,9 @@ void refuse_idle_match_options(const Settings& settings) {
   MatchOptions unused;
   add_match_settings(matching, unused);
   constexpr std::string_view kWithMaps = "with --left-disparity and --right-disparity";
-  settings.refuse_idle({"strip-width", "band-height", "iterations-per-pass"}, kWithMaps);
+  settings.refuse_idle(
+      {"strip-width", "band-height", "iterations-per-pass", "mask", "mask-right", "no-data"},
+      kWithMaps);
   const SettingValue options = matching.values();
   for (const auto& [name, value] : options.items()) {
     settings.refuse_idle({name.c_str()}, kWithMaps);
@@ -63,6 +67,7 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
                       "file; given maps belong to rectified images");
   add_kept_outline_setting(settings, pair.rectification);
   add_kitti_cameras_setting(settings, pair.kitti_cameras);
+  add_scene_mask_settings(settings, pair.masks);
   add_rectification_check_setting(settings, pair.check_rectification);
 }
 
@@ -84,6 +89,7 @@ void check_pair(const PairInput& pair, const Settings& settings) {
     }
   }
   pair.rectification.validate();
+  pair.masks.validate();
   if (pair.calibration.empty()) {
     settings.refuse_idle({"kept-outline", "kitti-cameras"}, "without --calibration");
   }
@@ -104,6 +110,8 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
       result.maps.left.disparity_px = read_disparity(pair.left_disparity, scale);
       result.maps.right.disparity_px = read_disparity(pair.right_disparity, scale);
       require_agreeing_maps(result.maps);
+    } else {
+      leave_out_masked(pair.masks, result.left, result.right);
     }
   });
   if (!pair.calibration.empty()) {

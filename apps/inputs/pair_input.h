@@ -7,6 +7,7 @@
 #include "apps/reports/run_report.h"
 #include "apps/settings/common_options.h"
 #include "engine/execution.h"
+#include "engine/image/scene_mask.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/settings.h"
@@ -29,6 +30,7 @@ struct PairInput {
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();
   bool check_rectification = true;
+  SceneMaskOptions masks;
 
   [[nodiscard]] bool has_maps() const { return !left_disparity.empty(); }
 };

@@ -14,6 +14,7 @@
 #include "engine/io/maps/map_io.h"
 #include "engine/matching/options/match_values.h"
 #include "engine/matching/search/match_inputs.h"
+#include "engine/options/scene_mask_settings.h"
 
 namespace vantage::apps {
 namespace {
@@ -85,6 +86,7 @@ void add_file_settings(Settings& settings, MatchJob& job) {
       "cyclopean-occlusion", job.cyclopean_occlusion, "MASK.png",
       "With --selection symmetric: write what sees the pixels of that camera: 0 both, 128 "
       "the left camera alone, 255 the right one alone, 64 no match");
+  add_scene_mask_settings(settings, job.masks);
   add_volume_settings(settings, job.volume);
   add_rectification_check_setting(settings, job.check_rectification);
 }
@@ -166,6 +168,7 @@ void require_files_hold_search(const MatchJob& job) {
 
 void check(const MatchJob& job, const Settings& settings) {
   job.match.validate();
+  job.masks.validate();
   job.common.execution.validate();
   job.depth.validate(job.vertical);
   OptionValues values = settings.option_values();

@@ -6,6 +6,7 @@
 #include "apps/settings/applied_tuning.h"
 #include "apps/settings/common_options.h"
 #include "apps/settings/depth_settings.h"
+#include "engine/image/scene_mask.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/settings.h"
@@ -39,6 +40,7 @@ struct MatchJob {
   /// Cameras stand one above the other, the left image's above: columns are searched.
   bool vertical = false;
   bool check_rectification = true;
+  SceneMaskOptions masks;
 
   /// δ of depths.
   [[nodiscard]] double disparity_resolution_px() const;

@@ -11,6 +11,7 @@
 #include "apps/commands/commands.h"
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/inputs/kitti_cameras_choice.h"
+#include "apps/inputs/masked_images.h"
 #include "apps/inputs/rectification_check.h"
 #include "apps/match/match_outputs.h"
 #include "apps/match/vertical_pair.h"
@@ -76,6 +77,7 @@ std::vector<Photograph> read_images(const MatchJob& job, RunReport& report) {
     images.push_back(report.timed_file_access("read", [&] { return read_photograph(input); }));
   }
   require_equal_sizes(job, images);
+  report.timed_file_access("read", [&] { leave_out_masked(job.masks, images[0], images[1]); });
   return images;
 }
 
@@ -303,6 +305,10 @@ int run_match(MatchJob& job, const Settings& settings) {
   SpaceOutputs space(job);
   compute_maps(job, settings, inputs, asked, matcher, space.requests(job), execution, report,
                matched);
+  if (space.posterior) {
+    space.posterior->erase(inputs.images[job.has_several() ? 0 : index_of(side_of(job))].left_out,
+                           execution);
+  }
   report.add_match(matched.report);
   tell_remarks(matched.report.remarks, job.common, report);
   report.set_memory(memory_use(inputs.images, matched.maps, matcher, execution));

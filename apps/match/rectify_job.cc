@@ -18,6 +18,7 @@
 #include "apps/reports/rectify_results.h"
 #include "apps/reports/run_report.h"
 #include "engine/error.h"
+#include "engine/image/left_out.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/rectification/feature_matches.h"
@@ -96,6 +97,7 @@ void rectify_pair(const Rectifier& rectifier, FramePair& pair, Execution& execut
     Photograph& image = side == Side::kLeft ? pair.left : pair.right;
     Photograph result;
     rectifier.apply(image, side, result, execution);
+    blacken_left_out(result);
     image = std::move(result);
   }
 }

@@ -41,7 +41,8 @@ std::size_t held_bytes(const Image<T>& image) {
   return sizeof(T) * image.view().stride() * static_cast<std::size_t>(image.height());
 }
 inline std::size_t held_bytes(const Photograph& photograph) {
-  return std::visit([](const auto& image) { return held_bytes(image); }, photograph.pixels);
+  return std::visit([](const auto& image) { return held_bytes(image); }, photograph.pixels) +
+         held_bytes(photograph.left_out);
 }
 template <typename T>
 std::size_t held_bytes(const std::vector<T>& values) {

@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/image/left_out.h"
 #include "engine/order_statistics.h"
 
 namespace vantage {
@@ -51,30 +53,6 @@ DataRange range_of_data(ImageView<const float> raster) {
   return range;
 }
 
-/// False, and nothing is written, if the row has no data.
-bool fill_row(const float* raster, int width, DataRange range, std::uint16_t* row) {
-  const double scale = 65535 / (range.high - range.low);
-  const auto level = [&](int x) {
-    const double value = (static_cast<double>(raster[x]) - range.low) * scale;
-    return static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0, 65535.0)));
-  };
-  int last = -1;  // with data
-  for (int x = 0; x < width; ++x) {
-    if (!std::isfinite(raster[x])) {
-      continue;
-    }
-    row[x] = level(x);
-    for (int gap = last + 1; gap < x; ++gap) {
-      row[gap] = last >= 0 && gap - last <= x - gap ? row[last] : row[x];
-    }
-    last = x;
-  }
-  if (last >= 0) {
-    std::fill(row + last + 1, row + width, row[last]);
-  }
-  return last >= 0;
-}
-
 }  // namespace
 
 bool has_data(ImageView<const float> raster) {
@@ -89,27 +67,21 @@ bool has_data(ImageView<const float> raster) {
 
 Photograph photograph_without_gaps(ImageView<const float> raster, Execution& execution) {
   const DataRange range = range_of_data(raster);
-  const int height = raster.height();
-  Image<std::uint16_t> image(raster.width(), height);
-  std::vector<std::uint8_t> is_filled(static_cast<std::size_t>(height));
-  execution.for_each_row(height, [&](int y) {
-    is_filled[static_cast<std::size_t>(y)] =
-        fill_row(raster.row(y), raster.width(), range, image.row(y)) ? 1 : 0;
+  const double scale = 65535 / (range.high - range.low);
+  Image<std::uint16_t> image(raster.width(), raster.height());
+  Mask without_data(raster.width(), raster.height());
+  execution.for_each_row(raster.height(), [&](int y) {
+    for (int x = 0; x < raster.width(); ++x) {
+      const bool has_value = std::isfinite(raster.at(x, y));
+      const double value =
+          has_value ? (static_cast<double>(raster.at(x, y)) - range.low) * scale : 0;
+      image.at(x, y) = static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0, 65535.0)));
+      without_data.at(x, y) = has_value ? 0 : 255;
+    }
   });
-  std::vector<int> with_data;
-  for (int y = 0; y < height; ++y) {
-    if (is_filled[static_cast<std::size_t>(y)] != 0) {
-      with_data.push_back(y);
-    }
-  }
-  for (int y = 0; y < height; ++y) {
-    if (is_filled[static_cast<std::size_t>(y)] == 0) {
-      const int nearest =
-          *std::ranges::min_element(with_data, {}, [&](int row) { return std::abs(row - y); });
-      std::copy_n(image.row(nearest), image.width(), image.row(y));
-    }
-  }
-  return Photograph{std::move(image)};
+  Photograph photograph{std::move(image)};
+  leave_out(photograph, std::move(without_data));
+  return photograph;
 }
 
 void disparities_of_data(const MatchedMap& map, ImageView<const float> left,

@@ -17,6 +17,9 @@ cv::Mat wrap(ImageView<const T> image) {
 
 template <typename T>
 Image<T> transpose(ImageView<const T> image) {
+  if (image.empty()) {
+    return {};
+  }
   Image<T> result(image.height(), image.width(), image.channels());
   cv::Mat target = wrap<T>(result.view());
   cv::transpose(wrap(image), target);
@@ -28,7 +31,8 @@ Image<T> transpose(ImageView<const T> image) {
 Photograph transposed(const Photograph& photograph) {
   return std::visit(
       [&]<typename T>(const Image<T>& image) {
-        return Photograph{transpose<T>(image.view()), photograph.origin};
+        return Photograph{transpose<T>(image.view()), photograph.origin,
+                          transposed(photograph.left_out.view())};
       },
       photograph.pixels);
 }

@@ -12,6 +12,7 @@
 #include "engine/options/frame_step_setting.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/pair_source_settings.h"
+#include "engine/options/scene_mask_settings.h"
 #include "engine/sequence/memory_plan.h"
 #include "engine/sequence/options/sequence_values.h"
 
@@ -112,6 +113,7 @@ void add_input_settings(Settings& settings, SequenceJob& job) {
                   "Cameras, to rectify the pairs first: OpenCV, Middlebury or KITTI file")
       .changes_results = false;  // the journal identifies inputs by their content
   add_kept_outline_setting(settings, job.rectification);
+  add_scene_mask_settings(settings, job.input.masks, true);
 }
 
 void add_save_setting(Settings& settings, SequenceJob& job) {

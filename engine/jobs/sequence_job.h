@@ -18,7 +18,10 @@ namespace vantage {
 
 /// What is computed of which pairs, wherever the results go.
 struct SequenceJob {
-  SequenceJob() { sequence.match = options_with_found_range(); }
+  SequenceJob() {
+    sequence.match = options_with_found_range();
+    input.masks = {};
+  }
 
   PairSourceOptions input;
   std::string calibration;  ///< file, empty = rectified pairs

@@ -1,13 +1,16 @@
 #include "engine/matching/match_runner.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/error.h"
+#include "engine/image/left_out.h"
 
 namespace vantage {
 namespace {
@@ -121,6 +124,26 @@ void MatchRunner::run(const MatchCall& call, const MatchRequest& request, Dispar
   }
   const auto work = pools_.refinement.borrow();
   search->refine(*work);
+  erase_left_out(call, maps, times);
+}
+
+void MatchRunner::erase_left_out(const MatchCall& call, DisparityMaps& maps,
+                                 MatchReport& report) const {
+  std::vector<std::string> shares;
+  for (std::size_t i = 0; i < (call.baselines.empty() ? 2U : 1U); ++i) {
+    const Mask& left_out = call.images[i].photograph->left_out;
+    const Side side = i == 0 ? call.reference_side : other_side(call.reference_side);
+    vantage::erase_left_out(left_out, execution_, maps.of(side));
+    if (!left_out.empty()) {
+      const double percent = std::max(0.1, 100 * share_of(left_out));
+      shares.push_back(fmt::format("{:.{}f} % of the {} image", percent, percent < 1 ? 1 : 0,
+                                   side == Side::kLeft ? "left" : "right"));
+    }
+  }
+  if (!shares.empty()) {
+    report.note("region",
+                fmt::format("region: {} is not scene; left out", fmt::join(shares, ", ")));
+  }
 }
 
 /// Chooses the tiles of both maps that are searched. False: the images moved, and the call is left

@@ -39,6 +39,8 @@ class MatchRunner {
   [[nodiscard]] MatchSize size_of(const MatchCall& call, bool keeps_costs) const;
   [[nodiscard]] SearchJob job_of(const MatchCall& call, const MatchRequest& request,
                                  DisparityMaps& maps, MatchReport& report, StageClock& clock) const;
+  /// Makes unknown, and tells, what is left out of the images.
+  void erase_left_out(const MatchCall& call, DisparityMaps& maps, MatchReport& report) const;
   [[nodiscard]] bool choose_tiles(MapSearch& search, SearchJob& job) const;
 
   const ResolvedMatchOptions& options_;

@@ -4,12 +4,16 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/image/left_out.h"
 #include "engine/image/remapped_row.h"
 #include "scheduler/interruption.h"
 
@@ -35,7 +39,8 @@ Rectifier::View Rectifier::make_view(const Camera& camera, Side side) const {
   View view{.lens = LensModel(camera),
             .ray_from_pixel = rectified.rotation.transpose() * rectified.matrix.inverse(),
             .x_px = {},
-            .y_px = {}};
+            .y_px = {},
+            .unseen = {}};
   if (!needs_rectification_) {
     return view;
   }
@@ -50,7 +55,44 @@ Rectifier::View Rectifier::make_view(const Camera& camera, Side side) const {
       view.y_px.at(x, y) = position ? static_cast<float>(position->y()) : kUnseen;
     }
   }
+  Mask unseen(pair_.width_px, pair_.height_px);
+  for (int y = 0; y < pair_.height_px; ++y) {
+    for (int x = 0; x < pair_.width_px; ++x) {
+      unseen.at(x, y) = nearest_pixel(view, x, y) ? 0 : 255;
+    }
+  }
+  if (share_of(unseen) > 0) {
+    view.unseen = std::move(unseen);
+  }
   return view;
+}
+
+/// The pixel of the photograph nearest to a rectified one; none: it shows nothing there.
+std::optional<std::array<int, 2>> Rectifier::nearest_pixel(const View& view, int x, int y) const {
+  const float column = std::floor(view.x_px.at(x, y) + 0.5F);
+  const float row = std::floor(view.y_px.at(x, y) + 0.5F);
+  const bool is_seen = column >= 0 && column < static_cast<float>(photograph_size_.width_px) &&
+                       row >= 0 && row < static_cast<float>(photograph_size_.height_px);
+  return is_seen ? std::optional(std::array{static_cast<int>(column), static_cast<int>(row)})
+                 : std::nullopt;
+}
+
+Mask Rectifier::left_out_of(const Photograph& source, Side side) const {
+  if (!needs_rectification_) {
+    return source.left_out.copy();
+  }
+  Mask left_out = view(side).unseen.copy();
+  if (source.left_out.empty()) {
+    return left_out;
+  }
+  left_out.resize(pair_.width_px, pair_.height_px);
+  for (int y = 0; y < pair_.height_px; ++y) {
+    for (int x = 0; x < pair_.width_px; ++x) {
+      const auto at = nearest_pixel(view(side), x, y);
+      left_out.at(x, y) = at ? source.left_out.at((*at)[0], (*at)[1]) : 255;
+    }
+  }
+  return left_out;
 }
 
 std::optional<Eigen::Vector2d> Rectifier::source_position(const View& view,
@@ -103,6 +145,7 @@ void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
         });
       },
       source.pixels);
+  leave_out(result, left_out_of(source, side));
 }
 
 Photograph undistorted(Photograph source, const Camera& lens, Execution& execution) {

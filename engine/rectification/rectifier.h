@@ -23,13 +23,12 @@ struct PhotographPositions {
 };
 
 /// Rectifies photographs of a calibrated pair of cameras at the same size: rows correspond, and
-/// lens distortion is removed. By default without black areas (see RectificationOptions): matching
-/// and view synthesis treat every pixel as image content, and black borders would match each other.
-/// The position map is computed once. Thread rule: after construction everything may be called
-/// concurrently.
+/// lens distortion is removed. By default without pixels that the photographs do not show (see
+/// RectificationOptions). The position map is computed once. Thread rule: after construction
+/// everything may be called concurrently.
 class Rectifier {
  public:
-  /// For images of this size. Throws as rectified_pair() does. Takes 8 bytes per pixel and image,
+  /// For images of this size. Throws as rectified_pair() does. Takes 9 bytes per pixel and image,
   /// about 0.1 µs per pixel.
   Rectifier(const StereoCalibration& calibration, int width_px, int height_px,
             const RectificationOptions& options = {});
@@ -52,7 +51,8 @@ class Rectifier {
   }
 
   /// The rectified image of `source`, by bicubic interpolation (Keys, a = −½) at exact positions;
-  /// alpha like a colour; 0 in all channels where the camera saw nothing. `result` gets the depth
+  /// alpha like a colour. Pixels that the camera did not see, or that are left out of the
+  /// photograph, are left out of `result` (image/left_out.h). `result` gets the depth
   /// and channels of `source` and reuses its memory, so nothing is allocated from the second frame
   /// on; it must not be `source`. Parallel over rows; bit-identical for every executor and
   /// instruction set. Throws Error if `source` has another size than the photographs.
@@ -64,7 +64,11 @@ class Rectifier {
     Eigen::Matrix3d ray_from_pixel;  ///< ray of the camera ← rectified pixel, homogeneous
     Image<float> x_px;               ///< position of each rectified pixel; NaN = not seen
     Image<float> y_px;
+    Mask unseen;  ///< empty: the camera sees all
   };
+  [[nodiscard]] std::optional<std::array<int, 2>> nearest_pixel(const View& view, int x,
+                                                                int y) const;
+  [[nodiscard]] Mask left_out_of(const Photograph& source, Side side) const;
 
   [[nodiscard]] View make_view(const Camera& camera, Side side) const;
   [[nodiscard]] static std::optional<Eigen::Vector2d> source_position(

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "engine/image/left_out.h"
 #include "kernels/filled_median/filled_median.h"
 
 namespace vantage {
@@ -170,6 +171,13 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
     for (const MapToRefine* one : maps) {
       mark_unknown(one->map->disparity_px.view(), execution, one->map->unmatched);
     }
+  }
+  for (const MapToRefine* one : maps) {
+    const MapToRefine* const partner = one == &map ? other : &map;
+    static const Mask kNone;
+    mark_left_out(one->image->left_out, partner != nullptr ? partner->image->left_out : kNone,
+                  one->side, 1.0F / static_cast<float>(one->pixels_per_column), execution,
+                  *one->map);
   }
   if (uses_confidence(options)) {
     start_step("confidence");

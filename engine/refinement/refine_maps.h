@@ -36,7 +36,8 @@ struct PartnerMap {
 /// One map to refine; all images have one size.
 struct MapToRefine {
   Side side = Side::kLeft;
-  const Photograph* image = nullptr;  ///< the map's own; for edge snapping and medians
+  /// The map's own; for edge snapping, medians, and what is left out of it.
+  const Photograph* image = nullptr;
   /// In: winners, NaN = unknown; out: the refined map. Without disparities there is no map to
   /// refine, only the other one to check. `disparity_y_px`: of a two-dimensional search, else
   /// empty. `confidence`: read if uses_confidence(). `unmatched` is output only.
@@ -76,7 +77,8 @@ std::size_t held_bytes(const RefinementWork& work);
 /// Refines winners to dense maps (EQUATIONS §5): edge snapping → cross-check → confidence →
 /// speckles → surface fit → fill, as set in `options`. `other`: the map of the other image, also
 /// refined if it is a result; null: no cross-check but with `map.partners`; without one unknown
-/// pixels are unmatched instead.
+/// pixels are unmatched instead. Pixels that are left out of the images are unmatched, and so are
+/// their partners.
 /// `start_step` is called with the name of each step before it runs (static storage). Identical for
 /// any `execution`.
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,

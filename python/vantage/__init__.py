@@ -87,8 +87,10 @@ class Matcher:
         self._set(*given)
 
     def compute(self, left: _Image, right: _Image, *, more: _Sequence[_Image] = (),
-                baselines: _Sequence[float] = (), bgr: bool = False, right_disparity: bool = False,
-                confidence: bool = False, posterior: bool = False) -> MatchResult:
+                baselines: _Sequence[float] = (), bgr: bool = False,
+                mask: _Mask | Literal["none"] | None = None, mask_right: _Mask | None = None,
+                right_disparity: bool = False, confidence: bool = False,
+                posterior: bool = False) -> MatchResult:
         """The maps of images of equal size, a MatchResult.
 
         left, right: arrays of uint8, uint16 or float32 (0 to 1), HxW or HxWx3.
@@ -96,6 +98,10 @@ class Matcher:
         of right and of these relative to the first, positive to the right; left is then the
         reference, and disparities are those between left and right.
         bgr: colours are in BGR order.
+        mask, mask_right: arrays of bool or uint8, HxW, of left and right: pixels where they are
+        False or 0 show no scene; they are neither matched nor filled, and unknown in all results.
+        None: black bars of films and black wedges of rectified images are found; "none": all pixels
+        show the scene.
 
         The map of the left image (of the right one with reference="right") is computed now; the
         right one, confidence and posterior mean and variance when they are asked for, or now if
@@ -103,7 +109,7 @@ class Matcher:
         changed. Raises UsageError for other arrays, Error for images that cannot be matched.
         """
         return self._native.compute(
-            left, right, list(more), [float(b) for b in baselines], bool(bgr),
+            left, right, list(more), [float(b) for b in baselines], bool(bgr), mask, mask_right,
             bool(right_disparity), bool(confidence), bool(posterior))
 
     def volume(self, left: _Image, right: _Image, *,

@@ -15,6 +15,7 @@
 #include "engine/error.h"
 #include "engine/image/area_average.h"
 #include "engine/image/intensity_rows.h"
+#include "engine/image/left_out.h"
 #include "kernels/map_enlargement/map_enlargement.h"
 
 namespace vantage {
@@ -117,15 +118,32 @@ MatchedPart::MatchedPart(const ResolvedMatchOptions& options, scheduler::Extent 
 }
 
 Photograph MatchedPart::of(const Photograph& photograph, Execution& execution) const {
-  return std::visit(
+  const bool is_smaller = extent_ != scheduler::Extent{cut_.columns.size(), cut_.rows.size()};
+  Photograph result = std::visit(
       [&]<typename T>(const Image<T>& image) {
         const ImageView<const T> pixels = cut(image.view(), cut_);
-        if (extent_ != scheduler::Extent{pixels.width(), pixels.height()}) {
-          return area_average(pixels, extent_.columns, extent_.rows, execution);
-        }
-        return Photograph{.pixels = Image<T>::borrowed(pixels), .origin = photograph.origin};
+        return is_smaller ? area_average(pixels, extent_.columns, extent_.rows, execution)
+                          : Photograph{Image<T>::borrowed(pixels), photograph.origin};
       },
       photograph.pixels);
+  if (photograph.left_out.empty()) {
+    return result;
+  }
+  const ImageView<const std::uint8_t> left_out = cut(photograph.left_out.view(), cut_);
+  if (is_smaller) {
+    // 255 where nothing of the area shows the scene: the mean is rounded to it within half a level.
+    result.left_out = std::move(
+        std::get<Mask>(area_average(left_out, extent_.columns, extent_.rows, execution).pixels));
+    execution.for_each_row(extent_.rows, [&](int y) {
+      for (int x = 0; x < extent_.columns; ++x) {
+        std::uint8_t& share = result.left_out.at(x, y);
+        share = share == 255 ? 255 : 0;
+      }
+    });
+  } else {
+    result.left_out = Mask::borrowed(left_out);
+  }
+  return result;
 }
 
 DisparityMap MatchedPart::of_prior(ImageView<const float> map_px) const {
@@ -164,6 +182,7 @@ void MatchedPart::bring_back(const MatchedMap& map_of_part, const Photograph& ma
   start(map_of_part.confidence, kNaN, map.confidence);
   start(map_of_part.unmatched, kUnmatched, map.unmatched);
   enlarge(map_of_part, matched, image, wanted_[index], execution, map);
+  erase_left_out(image.left_out, execution, map);
 }
 
 void MatchedPart::enlarge(const MatchedMap& map_of_part, const Photograph& matched,

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/error.h"
+#include "engine/image/left_out.h"
 
 namespace vantage {
 namespace {
@@ -59,6 +60,11 @@ void PosteriorMoments::write(int x, int y, int columns, const float* values) {
     mean_px_.at(x + j, y) = static_cast<float>(moments.mean);
     variance_px2_.at(x + j, y) = static_cast<float>(moments.variance);
   }
+}
+
+void PosteriorMoments::erase(const Mask& left_out, Execution& execution) {
+  erase_left_out(left_out, execution, mean_px_);
+  erase_left_out(left_out, execution, variance_px2_);
 }
 
 }  // namespace vantage

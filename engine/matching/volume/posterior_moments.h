@@ -1,5 +1,6 @@
 #pragma once
 
+#include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/volume_sink.h"
 
@@ -16,6 +17,9 @@ class PosteriorMoments final : public VolumeSink {
   /// Throws UsageError for a volume without probabilities or of a two-dimensional search.
   void start(const VolumeShape& shape) override;
   void write(int x, int y, int columns, const float* values) override;
+
+  /// Makes pixels unknown (image/left_out.h), once all is written.
+  void erase(const Mask& left_out, Execution& execution);
 
   /// Of the size of the level; NaN where no candidate has a probability. In pixels and pixels².
   [[nodiscard]] const Image<float>& mean_px() const { return mean_px_; }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/image/intensity_rows.h"
+#include "engine/image/left_out.h"
 #include "engine/image/memory_use.h"
 #include "engine/matching/levels/level_extents.h"
 #include "kernels/byte_intensity/byte_intensity.h"
@@ -48,14 +49,16 @@ void ReducedImages::prepare(const Photograph& photograph, int reductions, Execut
   }
   for (std::size_t i = 0; i < levels.size(); ++i) {
     images_[i].pixels = std::move(levels[i]);
+    if (i > 0) {
+      halve(i == 1 ? photograph.left_out : images_[i - 1].left_out, execution, images_[i].left_out);
+    }
   }
 }
 
 std::size_t ReducedImages::held_bytes() const {
   std::size_t bytes = 0;
   for (const Photograph& image : images_) {
-    bytes +=
-        std::visit([](const auto& pixels) { return vantage::held_bytes(pixels); }, image.pixels);
+    bytes += vantage::held_bytes(image);
   }
   return bytes;
 }

@@ -11,6 +11,7 @@
 #include "engine/io/video/image_sequence.h"
 #include "engine/io/video/raw_video.h"
 #include "engine/sequence/pairs/every_nth_pair.h"
+#include "engine/sequence/pairs/masked_pairs.h"
 #include "engine/sequence/pairs/moving_camera_pairs.h"
 #include "engine/sequence/pairs/packed_pairs.h"
 #include "engine/sequence/pairs/pair_list.h"
@@ -143,6 +144,7 @@ void PairSourceOptions::validate() const {
     throw UsageError(fmt::format("step is {}, expected 1 without sequence", step));
   }
   validate_step(every);
+  masks.validate();
 }
 
 void PairSource::decode(FramePair& pair) const {
@@ -161,7 +163,14 @@ std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
     const int step = taken_step(options.every, *all);
     all = std::make_unique<EveryNthPair>(std::move(all), options.every.first, step);
   }
-  return options.stereo == "-" ? std::make_unique<StreamedPairs>(std::move(all)) : std::move(all);
+  if (options.stereo == "-") {
+    all = std::make_unique<StreamedPairs>(std::move(all));
+  }
+  if (options.masks.is_active()) {
+    const bool are_photographs = !options.pairs.empty();
+    all = std::make_unique<MaskedPairs>(std::move(all), options.masks, are_photographs);
+  }
+  return all;
 }
 
 }  // namespace vantage

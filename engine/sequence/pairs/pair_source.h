@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/image/disparity_range.h"
+#include "engine/image/scene_mask.h"
 #include "engine/image/stereo_packing.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/raw_video_shape.h"
@@ -47,8 +48,9 @@ struct FramePair {
   /// Of PairSourceOptions::more; empty if the right image is not needed.
   std::vector<FetchedFrame> more_fetched;
   std::vector<Photograph> more;
-  std::vector<std::string> remarks;  ///< about the frames, and about the pair
-  PairDetails details;               ///< see PairSource::details(), of this pair
+  std::array<FetchedFrame, 2> masks;  ///< of `left` and `right`, if they are files
+  std::vector<std::string> remarks;   ///< about the frames, and about the pair
+  PairDetails details;                ///< see PairSource::details(), of this pair
 };
 
 /// Pairs of the input that a run takes: pair `first` and every `pairs`-th after it.
@@ -94,6 +96,8 @@ struct PairSourceOptions {
   std::string sequence;
   int step = 1;
   FrameStep every;
+  /// What is left out of the images; not of those of `more`.
+  SceneMaskOptions masks = {.left = std::string(SceneMaskOptions::kNone)};
 
   /// Throws UsageError naming the field, its value and what was expected.
   void validate() const;

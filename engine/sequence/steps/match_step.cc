@@ -44,6 +44,8 @@ class MatchStep final : public RunStep {
     } else {
       match_images(slot, request);
     }
+    const Photograph& image = options_.match.reference == Side::kLeft ? *slot.left : *slot.right;
+    slot.posterior.erase(image.left_out, execution_);
   }
 
   void add_memory_use(MemoryUse& use) const override {

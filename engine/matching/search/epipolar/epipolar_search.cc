@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/image/left_out.h"
 #include "engine/matching/chain/candidate_geometry.h"
 
 namespace vantage {
@@ -97,6 +98,9 @@ void EpipolarSearch::check(const MapTask& task, const DisparityMap& other_px) co
 void EpipolarSearch::refine(RefinementWork& work) {
   if (job_.is_checked()) {
     start_stage("cross-check");
+    for (const MapTask& task : job_.tasks) {
+      erase_left_out(task.image->left_out, job_.execution, *task.map);
+    }
     const DisparityMap left_px = job_.maps.left.disparity_px.copy();
     for (const MapTask& task : job_.tasks) {
       if (task.is_result) {

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "engine/image/scene_mask.h"
+#include "engine/options/settings.h"
+
+namespace vantage {
+
+/// --mask, --mask-right and --no-data, in the group that has begun. `per_frame`: of a sequence.
+void add_scene_mask_settings(Settings& settings, SceneMaskOptions& masks, bool per_frame = false);
+
+}  // namespace vantage
