@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/image/content_hash.h"
 #include "engine/image/side.h"
 #include "engine/matching/pair_matcher.h"
 #include "engine/matching/range_check.h"
@@ -60,6 +61,9 @@ PairExamination examine_pair(const Photograph& left, const Photograph& right,
                                                  100 * image.textureless_share,
                                                  is_left ? "left" : "right"));
     }
+  }
+  if (content_hash(left) == content_hash(right)) {
+    examination.problems.emplace_back("left and right are the same picture");
   }
   examination.rows = check_rectification(left, right);
   try {

@@ -78,6 +78,8 @@ TEST_F(CheckCommand, RefusesWhatNobodyCanMatch) {
   EXPECT_EQ(results()["makes_sense"], false);
   EXPECT_FALSE(results().contains("command"));
 
+  expect_one_line(check({left_, left_, "--quiet"}), 1, "check", "are the same picture");
+
   const std::string unrelated = folder_ / "unrelated.png";
   write_photograph(unrelated, {view(0, 2)});
   expect_one_line(check({left_, unrelated, "--quiet"}), 1, "check", "makes no sense");
