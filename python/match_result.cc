@@ -305,6 +305,12 @@ void bind_match_result(py::module_& module) {
                              "bool: the same of the right map.")
       .def_property_readonly("disparities", &MatchResult::disparities,
                              "(MIN, MAX): the range that was searched, ends included.")
+      .def_property_readonly(
+          "matched_share", [](const MatchResult& self) { return self.shares().matched; },
+          "float: share of the pixels that were matched; the others are filled or unknown.")
+      .def_property_readonly(
+          "filled_share", [](const MatchResult& self) { return self.shares().filled; },
+          "float: share of the pixels that were filled from their neighbours.")
       .def("__repr__", &MatchResult::text)
       .def("preview", &MatchResult::preview,
            "The map in false colours over the range searched: uint8, HxWx3, RGB.")

@@ -98,6 +98,7 @@ class MatchResult {
                   const pybind11::dict& keywords);
   /// Of the match that made the map of the reference.
   [[nodiscard]] const MatchReport& report() const { return computed_.report; }
+  [[nodiscard]] MapShares shares() const { return computed_.report.shares.value_or(MapShares()); }
   [[nodiscard]] std::pair<int, int> disparities() const {
     return {computed_.options.disparities.min, computed_.options.disparities.max};
   }

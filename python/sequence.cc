@@ -185,6 +185,7 @@ class FrameLoop {
         .has = {.other = frame.has_both_maps,
                 .confidence = options.saves(SequenceOutput::kConfidence),
                 .posterior = options.saves_posterior()},
+        .report = slot.match,
         .preview = frame.preview,
         .is_final = options.temporal.uses_past() || !options.baselines.empty() ||
                     options.unrectified != UnrectifiedSearch::kNone,

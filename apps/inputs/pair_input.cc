@@ -131,8 +131,7 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     MatchReport match;
     report.timed_compute(
         [&] { matcher.match(result.left, result.right, {}, result.maps, &match); });
-    report.add_match(match);
-    tell_remarks(match.remarks, common, report);
+    tell_match(match, common, report);
     warn_of_cut_range(common, result.left, result.right, result.maps, pair.match, is_found,
                       execution, report);
   }

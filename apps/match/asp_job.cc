@@ -100,8 +100,7 @@ std::string match(const AspJob& job, const DisparityMap& left, const DisparityMa
   MatchReport matched;
   report.timed_compute(
       [&] { matcher.match(left_image, right_image, {.right = false}, maps, &matched); });
-  report.add_match(matched);
-  tell_remarks(matched.remarks, job.common, report);
+  tell_match(matched, job.common, report);
   disparities_of_data(maps.left, left.view(), right.view(), execution, map);
   return {};
 }

@@ -309,8 +309,7 @@ int run_match(MatchJob& job, const Settings& settings) {
     space.posterior->erase(inputs.images[job.has_several() ? 0 : index_of(side_of(job))].left_out,
                            execution);
   }
-  report.add_match(matched.report);
-  tell_remarks(matched.report.remarks, job.common, report);
+  tell_match(matched.report, job.common, report);
   report.set_memory(memory_use(inputs.images, matched.maps, matcher, execution));
   if (job.vertical) {
     transpose(matched.maps);

@@ -14,4 +14,21 @@ void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, 
   }
 }
 
+void tell_match(const MatchReport& match, const CommonOptions& common, RunReport& report) {
+  report.add_match(match);
+  if (match.shares) {
+    report.add_result("map", map_values(*match.shares));
+    if (!common.quiet) {
+      tell("{}: {}\n", report.command(), to_text(*match.shares));
+    }
+  }
+  tell_remarks(match.remarks, common, report);
+}
+
+SettingValue map_values(const MapShares& shares) {
+  return {{"matched_share", shares.matched},
+          {"filled_share", shares.filled},
+          {"unknown_share", shares.unknown}};
+}
+
 }  // namespace vantage::apps

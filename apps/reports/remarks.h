@@ -10,5 +10,9 @@ namespace vantage::apps {
 
 /// Prints remarks of the engine on stderr, unless that is quiet, and adds them to the report.
 void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, RunReport& report);
+/// The same for those of a match, and what its map is worth (`results.map`); adds its stages.
+void tell_match(const MatchReport& match, const CommonOptions& common, RunReport& report);
+/// What a map is worth, as values of a report.
+SettingValue map_values(const MapShares& shares);
 
 }  // namespace vantage::apps

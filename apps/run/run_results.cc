@@ -11,6 +11,7 @@
 
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/settings/depth_settings.h"
 #include "engine/order_statistics.h"
 #include "engine/sequence/journal/sequence_join.h"
@@ -104,6 +105,18 @@ SettingValue depth_resolution_of(const RunJob& job, const DeliveredFrames& deliv
   return values;
 }
 
+/// The mean of all frames, and each frame's.
+SettingValue maps_of(const SequenceReport& sequence) {
+  SettingValue values = map_values(mean_shares(sequence));
+  values["frames"] = SettingValue::array();
+  for (const auto& [frame, shares] : sequence.map_shares) {
+    SettingValue of_frame = map_values(shares);
+    of_frame["frame"] = frame;
+    values["frames"].push_back(std::move(of_frame));
+  }
+  return values;
+}
+
 }  // namespace
 
 std::vector<Remark> remarks_of(const RunJob& job, const SequenceReport& sequence) {
@@ -163,6 +176,9 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
   if (job.sequence.saves(SequenceOutput::kDepthResolution)) {
     results["depth_resolution"] = depth_resolution_of(job, delivered);
   }
+  if (!sequence.map_shares.empty()) {
+    results["map"] = maps_of(sequence);
+  }
   if (sequence.cut) {
     results["cut_range"] = cut_range_values(*sequence.cut);
     results["cut_range"]["frame"] = sequence.cut_frame;
@@ -202,6 +218,9 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
   tell("{}\n", line);
   if (sequence.frames + sequence.pictures_again > 0) {
     print_processor_time(sequence);
+  }
+  if (!sequence.map_shares.empty()) {
+    tell("run: {}\n", to_text(mean_shares(sequence)));
   }
   if (sequence.reuse.frames > 0) {
     tell("run: {:.0f} % of the tiles kept the disparities of the frame before\n",

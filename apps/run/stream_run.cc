@@ -88,6 +88,9 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
     tell("run: {} frame{} of {}x{} pixels -> standard output{}\n", sequence.frames,
          sequence.frames == 1 ? "" : "s", sequence.width_px, sequence.height_px,
          sequence.interrupted ? " (interrupted)" : "");
+    if (!sequence.map_shares.empty()) {
+      tell("run: {}\n", to_text(mean_shares(sequence)));
+    }
   }
   return sequence.interrupted       ? kExitInterrupted
          : sequence.skipped.empty() ? kExitDone

@@ -125,6 +125,7 @@ void MatchRunner::run(const MatchCall& call, const MatchRequest& request, Dispar
   const auto work = pools_.refinement.borrow();
   search->refine(*work);
   erase_left_out(call, maps, times);
+  examine(call, job);
 }
 
 void MatchRunner::erase_left_out(const MatchCall& call, DisparityMaps& maps,
@@ -143,6 +144,20 @@ void MatchRunner::erase_left_out(const MatchCall& call, DisparityMaps& maps,
   if (!shares.empty()) {
     report.note("region",
                 fmt::format("region: {} is not scene; left out", fmt::join(shares, ", ")));
+  }
+}
+
+/// What the finished map is worth.
+void MatchRunner::examine(const MatchCall& call, SearchJob& job) const {
+  const Side side = !call.baselines.empty() ? call.reference_side
+                    : job.request.left      ? Side::kLeft
+                                            : Side::kRight;
+  const bool has_mask = options_.refinement || job.request.unmatched;
+  if (job.request.wants(side)) {
+    job.clock.start("examine");
+    const Mask& left_out =
+        job.images[call.baselines.empty() ? index_of(side) : 0].photograph->left_out;
+    job.report.shares = map_shares(job.maps.of(side), has_mask, left_out, execution_);
   }
 }
 

@@ -41,6 +41,7 @@ class MatchRunner {
                                  DisparityMaps& maps, MatchReport& report, StageClock& clock) const;
   /// Makes unknown, and tells, what is left out of the images.
   void erase_left_out(const MatchCall& call, DisparityMaps& maps, MatchReport& report) const;
+  void examine(const MatchCall& call, SearchJob& job) const;
   [[nodiscard]] bool choose_tiles(MapSearch& search, SearchJob& job) const;
 
   const ResolvedMatchOptions& options_;

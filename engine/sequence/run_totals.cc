@@ -53,12 +53,26 @@ void add_frame(SequenceReport& report, const FrameSlot& slot) {
     }
     add_range_check(report, slot);
     add_match_remarks(report, slot);
+    if (slot.match.shares) {
+      report.map_shares.emplace(slot.frame, *slot.match.shares);
+    }
   }
   for (const auto& times : {slot.match.stages, slot.times}) {
     for (const StageTime& stage : times) {
       add_stage(report, stage.name, stage.seconds);
     }
   }
+}
+
+MapShares mean_shares(const SequenceReport& sequence) {
+  MapShares mean;
+  const auto frames = static_cast<double>(sequence.map_shares.size());
+  for (const auto& [frame, shares] : sequence.map_shares) {
+    mean.matched += shares.matched / frames;
+    mean.filled += shares.filled / frames;
+    mean.unknown += shares.unknown / frames;
+  }
+  return mean;
 }
 
 void add_processor_time(SequenceReport& report, const StepAccounts& accounts, double all_seconds,

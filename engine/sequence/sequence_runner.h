@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,7 +74,8 @@ struct SequenceReport {
   std::vector<FrameRemark> skipped;
   std::vector<FrameRemark> remarks;  ///< frames that repeat the previous one, gaps in time, …
   std::vector<MatchRemark> match_remarks;
-  int frames_maybe_cut = 0;  ///< frames whose search range may be too narrow
+  std::map<int, MapShares> map_shares;  ///< by frame, of those that this run matched
+  int frames_maybe_cut = 0;             ///< frames whose search range may be too narrow
   /// The worst check of such a frame: the largest share beyond the range. Only the first few frames
   /// that are matched are checked, so it may depend on timing.
   std::optional<CutRange> cut;
@@ -96,6 +98,9 @@ struct SequenceReport {
   ReuseReport reuse;
   MemoryUse memory;  ///< "frames in flight" and that of matching them
 };
+
+/// The mean of the frames of `map_shares`, of which there are some.
+MapShares mean_shares(const SequenceReport& sequence);
 
 /// Input and settings of a run.
 struct SequenceRun {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/matching/search/coarse_to_fine/search_report.h"
+#include "engine/matching/worth/map_shares.h"
 #include "engine/remark.h"
 
 namespace vantage {
@@ -23,6 +24,8 @@ struct MatchReport : SearchReport {
   std::vector<StageTime> stages;
   /// With MatchRequest::previous: the share of tiles that were searched, of the map with more.
   std::optional<double> searched_share;
+  /// Of the left map if it was requested, else of the right one.
+  std::optional<MapShares> shares;
   std::vector<Remark> remarks;
 
   void warn(std::string_view subject, std::string text) {
@@ -35,12 +38,15 @@ struct MatchReport : SearchReport {
   void count_searched(double share) {
     searched_share = std::max(searched_share.value_or(0), share);
   }
-  /// Adds the work of another map of the same images; keeps the first plan.
+  /// Adds the work of another map of the same images; keeps the first plan and shares.
   void add(const MatchReport& other) {
     stages.insert(stages.end(), other.stages.begin(), other.stages.end());
     remarks.insert(remarks.end(), other.remarks.begin(), other.remarks.end());
     if (plan.passes.empty()) {
       plan = other.plan;
+    }
+    if (!shares) {
+      shares = other.shares;
     }
     cells += other.cells;
     finest_cells += other.finest_cells;
