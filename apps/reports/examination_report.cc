@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/vertical_error_report.h"
 #include "engine/image/side.h"
 #include "engine/options/match_settings.h"
@@ -78,8 +79,7 @@ std::string pair_text(const PairExamination& found) {
   text += line("rows", rows_text(found.rows));
   if (found.disparities) {
     text += line("range", to_text(*found.disparities));
-    text += line("match", fmt::format("{:.0f} % of the pixels in {:.2f} s",
-                                      percent(found.matched_share), found.seconds));
+    text += line("match", fmt::format("{} in {:.2f} s", to_text(found.shares), found.seconds));
   }
   for (const Remark& remark : found.remarks) {
     text += line(remark.is_warning() ? "warning" : "note", with_dashes(remark.text));
@@ -121,7 +121,7 @@ SettingValue pair_values(const ExaminedPair& pair) {
   }
   if (found.disparities) {
     values["disparities"] = to_text(*found.disparities);
-    values["matched_share"] = found.matched_share;
+    values["map"] = map_values(found.shares);
     values["seconds"] = found.seconds;
   }
   return values;

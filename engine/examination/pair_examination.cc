@@ -10,7 +10,6 @@
 #include "engine/image/content_hash.h"
 #include "engine/image/side.h"
 #include "engine/matching/pair_matcher.h"
-#include "engine/matching/range_check.h"
 #include "engine/seconds_since.h"
 
 namespace vantage {
@@ -30,16 +29,15 @@ void try_match(const Photograph& left, const Photograph& right, MatchOptions opt
   DisparityMaps maps;
   MatchReport report;
   const MatchOptions used =
-      PairMatcher(options, execution)
-          .match(left, right, {.left = true, .unmatched = true}, maps, &report);
+      PairMatcher(options, execution).match(left, right, {.left = true}, maps, &report);
   examination.seconds = seconds_since(start) / std::pow(options.scale, 3);
   examination.disparities = used.disparities;
   examination.remarks = std::move(report.remarks);
-  examination.matched_share = 1 - matches_at_ends(maps, used).unmatched;
-  if (examination.matched_share < kMinMatchedShare) {
+  examination.shares = report.shares.value();
+  if (examination.shares.matched < kMinMatchedShare) {
     examination.problems.push_back(
         fmt::format("only {:.0f} % of the pixels can be matched, expected at least {:.0f} %",
-                    100 * examination.matched_share, 100 * kMinMatchedShare));
+                    100 * examination.shares.matched, 100 * kMinMatchedShare));
   }
 }
 

@@ -9,6 +9,7 @@
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/matching/worth/map_shares.h"
 #include "engine/rectification/vertical_error.h"
 #include "engine/remark.h"
 
@@ -19,7 +20,7 @@ struct PairExamination {
   std::array<ImageStatistics, 2> images;      ///< by index_of(Side)
   std::optional<VerticalError> rows;          ///< empty: too few points in common
   std::optional<DisparityRange> disparities;  ///< that were searched; empty: there was no match
-  double matched_share = 0;                   ///< of the left image's pixels
+  MapShares shares;                           ///< of the left map
   double seconds = 0;                         ///< of the match, and of finding its range
   std::vector<Remark> remarks;                ///< of the match
   std::vector<std::string> problems;  ///< why a match makes no sense, a line each; empty: it does

@@ -55,7 +55,7 @@ TEST_F(CheckCommand, NamesTheCommandThatMatchesThePair) {
   const auto pair = found["pairs"][0];
   EXPECT_EQ(pair["width_px"], kWidth);
   EXPECT_EQ(pair["left"]["bits"], 8);
-  EXPECT_GT(pair["matched_share"], 0.8);
+  EXPECT_GT(pair["map"]["matched_share"], 0.8);
   EXPECT_GT(found["memory_bytes"], 1 << 20);
   int min = 0;
   int max = 0;
