@@ -13,6 +13,7 @@
 #include "engine/image/memory_use.h"
 #include "engine/image/photograph.h"
 #include "engine/image/pixel_buffer.h"
+#include "engine/image/white_level.h"
 #include "engine/io/images/opencv_setup.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_formats.h"

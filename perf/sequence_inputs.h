@@ -99,7 +99,6 @@ class RepeatedPairs final : public PairSource {
     ++next_index_;
     return source_->fetch(pair);
   }
-  void decode(FramePair& pair) const override { source_->decode(pair); }
   void skip_to(int index) override {
     next_index_ = index;
     source_->skip_to(index % source_->pair_count());
@@ -120,6 +119,7 @@ class RepeatedPairs final : public PairSource {
   }
 
  private:
+  void make_images(FramePair& pair) const override { source_->decode(pair); }
   std::unique_ptr<PairSource> source_;
   int pair_count_;
   std::function<void(int index)> on_fetch_;

@@ -134,29 +134,15 @@ PixelArray::PixelArray(const py::object& object, ChannelOrder order, std::string
   }
 }
 
-void PixelArray::warn_of_range() const {
-  if (!std::holds_alternative<PixelBuffer<float>>(buffer_) || array_.size() == 0) {
-    return;
-  }
-  const auto min = array_.attr("min")().cast<float>();
-  const auto max = array_.attr("max")().cast<float>();
-  constexpr float kMargin = 0.25F;  // filters ring, highlights are above white
-  const bool is_finite = std::isfinite(min) && std::isfinite(max);  // others are refused
-  if (is_finite && (min < -kMargin || max > 1 + kMargin)) {
-    const std::string text = fmt::format(
-        "{}: the values of float32 are {:g} to {:g}, expected 0 to 1: divide them by that of white",
-        name_, min, max);
-    // 2: the line that called the function of the package.
-    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 2) != 0) {
-      throw py::error_already_set();
-    }
-  }
-}
-
-Photograph PixelArray::photograph() const {
-  return about(name_, [&] {
+Photograph PixelArray::photograph(const WhiteLevel& level) const {
+  Photograph read = about(name_, [&] {
     return std::visit([](const auto& buffer) { return photograph_of(buffer); }, buffer_);
   });
+  if (level.scales(read)) {
+    read = copy();
+    level.apply(read);
+  }
+  return read;
 }
 
 Photograph PixelArray::copy() const {

@@ -17,12 +17,10 @@ class PixelArray {
   /// A NumPy array, or what has one (PIL images): uint8, uint16 or float32, H×W or H×W×C. Throws
   /// TypeError for other objects, UsageError, which starts with `name`, for other arrays.
   PixelArray(const pybind11::object& object, ChannelOrder order, std::string name);
-  /// Warns where floats are far from 0 to 1, as those of 0 to 255 are. Of images that are only
-  /// written, which may hold any, it is not asked.
-  void warn_of_range() const;
 
-  /// Reads the pixels in place where their layout allows. Throws Error, which starts with the name.
-  [[nodiscard]] Photograph photograph() const;
+  /// Reads the pixels in place where their layout allows and nothing is to be scaled. Throws Error,
+  /// which starts with the name.
+  [[nodiscard]] Photograph photograph(const WhiteLevel& level = {}) const;
   [[nodiscard]] Photograph copy() const;
   /// CRC-32 of all pixels.
   [[nodiscard]] std::uint32_t checksum() const;

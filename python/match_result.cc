@@ -44,6 +44,8 @@ void MatchResult::match(const PairMatcher& matcher, const std::vector<Photograph
       unrectified_ ? unrectified_->match(matcher.options(), photographs[0], photographs[1], request,
                                          computed.maps, computed.report)
                    : images_.match(matcher, photographs, request, computed.maps, &computed.report);
+  computed.report.remarks.insert(computed.report.remarks.begin(), images_.remarks().begin(),
+                                 images_.remarks().end());
   if (wanted.posterior) {
     moments.erase(photographs[images_.reference(side)].left_out, execution_);
     computed.posterior = {moments.mean_px().copy(), moments.variance_px2().copy()};

@@ -23,11 +23,12 @@ Photograph borrowed(const Photograph& photograph) {
 
 MatchedImages::MatchedImages(std::vector<PixelArray> arrays, std::vector<double> baselines,
                              std::array<std::shared_ptr<const Photograph>, 2> masks,
-                             bool finds_borders)
+                             bool finds_borders, std::optional<double> white_level)
     : arrays_(std::move(arrays)),
       baselines_(std::move(baselines)),
       masks_(std::move(masks)),
-      finds_borders_(finds_borders) {
+      finds_borders_(finds_borders),
+      white_level_given_(white_level) {
   const std::size_t others = arrays_.size() - 1;
   if ((!baselines_.empty() || others > 1) && baselines_.size() != others) {
     throw UsageError(
@@ -45,7 +46,7 @@ MatchedImages::MatchedImages(Photograph left, Photograph right) {
 std::vector<Photograph> MatchedImages::photographs() const {
   std::vector<Photograph> photographs;
   for (const PixelArray& array : arrays_) {
-    photographs.push_back(array.photograph());
+    photographs.push_back(array.photograph(white_level_));
   }
   for (const Photograph& photograph : own_) {
     photographs.push_back(borrowed(photograph));
@@ -54,8 +55,10 @@ std::vector<Photograph> MatchedImages::photographs() const {
   const bool has_borders = finds_borders_ && (may_have_black_border(photographs[0]) ||
                                               may_have_black_border(photographs[1]));
   if (has_masks || has_borders) {  // whose pixels get other values
-    photographs[0] = arrays_[0].copy();
-    photographs[1] = arrays_[1].copy();
+    for (const std::size_t i : {0, 1}) {
+      photographs[i] = arrays_[i].copy();
+      white_level_.apply(photographs[i]);
+    }
     const SceneMaskOptions options{.left = finds_borders_ ? "" : "none"};
     leave_out_of_pair(options, {masks_[0].get(), masks_[1].get()}, nullptr, photographs[0],
                       photographs[1]);
@@ -73,7 +76,15 @@ std::vector<Photograph> MatchedImages::read() {
     }
   }
   checksums_ = checksums();
-  return found;
+  if (arrays_.empty()) {
+    return found;
+  }
+  WhiteLevelSearch search(white_level_given_);
+  for (const Photograph& photograph : found) {
+    search.add(photograph);
+  }
+  white_level_ = search.found();
+  return photographs();
 }
 
 std::vector<Photograph> MatchedImages::read_again(const char* asked_for) const {

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/vantage.h"
@@ -18,14 +20,21 @@ class MatchedImages {
   /// many more as there are numbers, see StereoMatcher::match_several().
   /// `masks`: pictures of the first two, black where they show no scene; null pointers: none.
   MatchedImages(std::vector<PixelArray> arrays, std::vector<double> baselines,
-                std::array<std::shared_ptr<const Photograph>, 2> masks, bool finds_borders);
+                std::array<std::shared_ptr<const Photograph>, 2> masks, bool finds_borders,
+                std::optional<double> white_level);
   /// A pair that nobody else can change.
   MatchedImages(Photograph left, Photograph right);
 
-  /// The photographs, to be read while this lives. The first call remembers what they are.
+  /// The photographs at their white level, to be read while this lives. The first call remembers
+  /// what they are.
   [[nodiscard]] std::vector<Photograph> read();
   /// The same later; throws Error that names `asked_for` where arrays have changed since read().
   [[nodiscard]] std::vector<Photograph> read_again(const char* asked_for) const;
+
+  /// What read() found out.
+  [[nodiscard]] std::span<const Remark> remarks() const {
+    return {white_level_.remark ? &*white_level_.remark : nullptr, white_level_.remark ? 1U : 0U};
+  }
 
   /// The map's image: of the pair the left one, unless the second camera is on the left.
   [[nodiscard]] Side side(Side reference) const {
@@ -49,7 +58,9 @@ class MatchedImages {
   std::vector<double> baselines_;
   std::array<std::shared_ptr<const Photograph>, 2> masks_;  ///< of arrays_
   bool finds_borders_ = false;                              ///< of arrays_
-  std::vector<std::uint32_t> checksums_;                    ///< of arrays_
+  std::optional<double> white_level_given_;
+  WhiteLevel white_level_;
+  std::vector<std::uint32_t> checksums_;  ///< of arrays_
 };
 
 }  // namespace vantage::python

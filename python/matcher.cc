@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "engine/options/pair_source_settings.h"
 #include "python/arrays.h"
 #include "python/calls.h"
 #include "python/options.h"
@@ -19,20 +20,18 @@ MatchSetup match_setup(py::dict keywords) {
   Settings settings;
   add_reference_setting(settings, setup.options.reference);
   add_match_settings(settings, setup.options);
+  add_white_level_setting(settings, setup.white_level);
   set_options(settings, keywords);
   return setup;
 }
 
-MatchedImages ImageArguments::images() const {
+MatchedImages ImageArguments::images(std::optional<double> white_level) const {
   const ChannelOrder order = bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb;
   std::vector<PixelArray> arrays;
   arrays.emplace_back(left, order, "left");
   arrays.emplace_back(right, order, "right");
   for (std::size_t i = 0; i < more.size(); ++i) {
     arrays.emplace_back(more[i], order, fmt::format("more[{}]", i));
-  }
-  for (const PixelArray& array : arrays) {
-    array.warn_of_range();
   }
   std::array<std::shared_ptr<const Photograph>, 2> masks;
   const bool is_none = py::isinstance<py::str>(mask) && py::str(mask).equal(py::str("none"));
@@ -44,7 +43,7 @@ MatchedImages ImageArguments::images() const {
     }
   }
   const bool finds_borders = mask.is_none() && mask_right.is_none();
-  return {std::move(arrays), baselines, std::move(masks), finds_borders};
+  return {std::move(arrays), baselines, std::move(masks), finds_borders, white_level};
 }
 
 Matcher::Matcher(const std::optional<StereoCalibration>& unrectified, bool on_rectified,
@@ -105,8 +104,9 @@ std::unique_ptr<MatchResult> Matcher::compute(const ImageArguments& arguments,
                                               Wanted wanted) const {
   check(arguments);
   check_unrectified(arguments, wanted);
-  auto result = std::make_unique<MatchResult>(matcher_, *setup_.execution, arguments.images(),
-                                              wanted, unrectified_, spare_);
+  auto result = std::make_unique<MatchResult>(matcher_, *setup_.execution,
+                                              arguments.images(setup_.white_level), wanted,
+                                              unrectified_, spare_);
   warnings_.warn(result->report().remarks);
   return result;
 }
@@ -115,6 +115,7 @@ py::dict Matcher::options() {
   Settings settings;
   add_reference_setting(settings, setup_.options.reference);
   add_match_settings(settings, setup_.options);
+  add_white_level_setting(settings, setup_.white_level);
   const SettingValue values = settings.values();
   py::dict result;
   for (const auto& [name, value] : values.items()) {

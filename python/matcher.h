@@ -18,6 +18,7 @@ namespace vantage::python {
 /// Options of matching, and the threads to use.
 struct MatchSetup {
   MatchOptions options = options_with_found_range();
+  std::optional<double> white_level;  ///< see WhiteLevelSearch
   Execution* execution = nullptr;
 };
 
@@ -34,7 +35,7 @@ struct ImageArguments {
   pybind11::object mask = pybind11::none();  ///< array, None: borders are found, "none"
   pybind11::object mask_right = pybind11::none();
 
-  [[nodiscard]] MatchedImages images() const;
+  [[nodiscard]] MatchedImages images(std::optional<double> white_level) const;
 };
 
 /// Matcher of the package.

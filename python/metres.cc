@@ -12,6 +12,7 @@
 #include "python/arrays.h"
 #include "python/calls.h"
 #include "python/options.h"
+#include "python/remark_warnings.h"
 
 namespace vantage::python {
 namespace py = pybind11;
@@ -138,7 +139,12 @@ class MapArrays {
         side_(take_reference(keywords)),
         options_(metric_options(MetricOutput::kPoints, keywords)),
         image_(image, bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb, "image") {
-    image_.warn_of_range();
+    WhiteLevelSearch search;
+    search.add(image_.photograph());
+    white_level_ = search.found();
+    if (white_level_.remark) {
+      RemarkWarnings().warn({&*white_level_.remark, 1});
+    }
     if (!unmatched.is_none()) {
       unmatched_ = mask_from(unmatched, "unmatched");
     }
@@ -153,7 +159,7 @@ class MapArrays {
   template <typename Make>
   auto with_source(const Calibration& calibration, const Make& make) const {
     return on_threads_of(execution_, [&] {
-      const Photograph photograph = image_.photograph();
+      const Photograph photograph = image_.photograph(white_level_);
       const MetricCamera camera = metric_camera({.disparity_px = map_.view(), .side = side_},
                                                 calibration, options_, MetricOutput::kPoints);
       return make(CloudSource{.disparity_px = map_.view(),
@@ -171,6 +177,7 @@ class MapArrays {
   Side side_;
   MetricOptions options_;
   PixelArray image_;
+  WhiteLevel white_level_;
   Mask unmatched_;
   Image<float> confidence_;
 };

@@ -8,10 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "engine/options/pair_source_settings.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
 #include "python/options.h"
+#include "python/remark_warnings.h"
 
 namespace vantage::python {
 namespace py = pybind11;
@@ -72,18 +74,25 @@ py::tuple to_rectify(const py::object& left, const py::object& right,
                      const std::optional<StereoCalibration>& calibration, double kept_outline,
                      bool bgr, py::dict keywords) {
   Execution& execution = take_execution(keywords);
-  Settings none;
-  set_options(none, keywords);
+  Settings settings;
+  std::optional<double> white_level;
+  add_white_level_setting(settings, white_level);
+  set_options(settings, keywords);
   const RectificationOptions options{kept_outline};
   options.validate();
   const ChannelOrder order = bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb;
   const PixelArray left_pixels(left, order, "left");
   const PixelArray right_pixels(right, order, "right");
-  left_pixels.warn_of_range();
-  right_pixels.warn_of_range();
+  std::optional<Remark> scaled;
   RectifiedImages result = on_threads_of(execution, [&] {
-    return rectify(left_pixels.copy(), right_pixels.copy(), calibration, options, execution);
+    Photograph pair[] = {left_pixels.copy(), right_pixels.copy()};
+    Photograph* const both[] = {&pair[0], &pair[1]};
+    scaled = scale_to_white_level(both, white_level);
+    return rectify(std::move(pair[0]), std::move(pair[1]), calibration, options, execution);
   });
+  if (scaled) {
+    RemarkWarnings().warn({&*scaled, 1});
+  }
   return py::make_tuple(
       array_of(std::move(result.left), order), array_of(std::move(result.right), order),
       result.calibration, result.cameras, result.row_error_px,

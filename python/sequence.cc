@@ -142,6 +142,9 @@ class FrameLoop {
       return py::none();
     }
     const FrameSlot& slot = *frame->slot;
+    if (const std::optional<Remark>& remark = source_->white_level().remark) {
+      warnings_.warn({&*remark, 1});
+    }
     warnings_.warn(slot.match.remarks);
     if (slot.cut && slot.cut->any()) {
       const Remark remark = cut_range_remark(*slot.cut, frame->searched, false);

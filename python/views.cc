@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/options/match_settings.h"
+#include "engine/options/pair_source_settings.h"
 #include "engine/options/synthesis_settings.h"
 #include "engine/options/wanted_views.h"
 #include "engine/vantage.h"
@@ -25,6 +26,7 @@ struct ViewSetup {
   SynthesisOptions synthesis;
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();
+  std::optional<double> white_level;
 };
 
 void rectify_pair(const StereoCalibration& calibration, const RectificationOptions& options,
@@ -77,6 +79,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
   add_synthesis_settings(settings, setup.synthesis);
   settings.number("kept-outline", setup.rectification.kept_outline, "SHARE", "");
   add_match_settings(settings, setup.match);
+  add_white_level_setting(settings, setup.white_level);
   set_options(settings, keywords);
   setup.synthesis.validate();
   setup.rectification.validate();
@@ -87,9 +90,9 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
   const ChannelOrder order = bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb;
   const PixelArray left_pixels(left, order, "left");
   const PixelArray right_pixels(right, order, "right");
-  left_pixels.warn_of_range();
-  right_pixels.warn_of_range();
   PairWithMaps pair;
+  Photograph* const both[] = {&pair.left, &pair.right};
+  std::optional<Remark> scaled;
   if (!left_map.is_none()) {
     pair.maps.left.disparity_px = map_from(left_map, "disparity");
     pair.maps.right.disparity_px = map_from(right_map, "right_disparity");
@@ -100,6 +103,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
     pair.left = left_pixels.copy();
     pair.right = right_pixels.copy();
     require_equal_shapes(pair.left, pair.right);
+    scaled = scale_to_white_level(both, setup.white_level);
     if (calibration) {
       rectify_pair(*calibration, setup.rectification, pair, execution);
     }
@@ -111,6 +115,9 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
     }
     return render(setup, poses, pair, execution);
   });
+  if (scaled) {
+    report.remarks.push_back(*scaled);
+  }
   RemarkWarnings().warn(report.remarks);
   py::list arrays;
   for (Photograph& image : images) {

@@ -116,7 +116,7 @@ py::tuple Matcher::volume(const ImageArguments& arguments, const py::dict& keywo
   set_options(settings, options);
   output.file = "array";  // there is an output
   check_volume(output, setup_.options);
-  MatchedImages images = arguments.images();
+  MatchedImages images = arguments.images(setup_.white_level);
   MemoryVolume volume(output.rows, max_bytes);
   on_threads_of(*setup_.execution, [&] {
     const Side side = images.side(setup_.options.reference);
@@ -129,6 +129,7 @@ py::tuple Matcher::volume(const ImageArguments& arguments, const py::dict& keywo
                   .volumes = {&request, 1}},
                  maps);
   });
+  warnings_.warn(images.remarks());
   const VolumeShape shape = volume.shape();
   const auto range = [](const DisparityRange& disparities) {
     return py::make_tuple(disparities.min, disparities.max);

@@ -3,6 +3,7 @@
 #include "apps/match/rectify_job.h"
 #include "apps/settings/command_line.h"
 #include "engine/options/calibration_settings.h"
+#include "engine/options/pair_source_settings.h"
 #include "engine/options/settings.h"
 
 namespace vantage::apps {
@@ -27,6 +28,7 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.integer(
       "sample-pairs", job.sample_pairs, "N",
       "Maximum number of pairs to estimate the cameras from and to measure row errors in");
+  add_white_level_setting(settings, job.input.white_level);
   settings.start_group("Output: at least one of these");
   settings
       .path(

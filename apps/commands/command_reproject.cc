@@ -10,11 +10,13 @@
 #include "apps/process/command_work.h"
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
 #include "apps/settings/command_line.h"
 #include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/image/eight_bit.h"
+#include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/options/calibration_settings.h"
@@ -117,11 +119,13 @@ struct MapFiles {
   Image<float> confidence;
 };
 
-MapFiles read_files(const ReprojectJob& job) {
+MapFiles read_files(const ReprojectJob& job, RunReport& report) {
   MapFiles files;
   files.disparity_px = read_disparity(job.map, job.disparity_scale.value_or(0));
   if (!job.image.empty()) {
     files.image = read_photograph(job.image);
+    Photograph* const image[] = {&files.image};
+    tell_remark(scale_to_white_level(image, {}), job.common, report);
   }
   if (!job.unmatched.empty()) {
     files.unmatched = eight_bit(read_photograph(job.unmatched));
@@ -163,7 +167,7 @@ int command_reproject(const Arguments& arguments) {
   RunReport& report = work.report;
   Execution& execution = work.execution;
 
-  const MapFiles read = report.timed_file_access("read", [&] { return read_files(job); });
+  const MapFiles read = report.timed_file_access("read", [&] { return read_files(job, report); });
   const int width = read.disparity_px.width();
   const int height = read.disparity_px.height();
   const CloudSource source{.disparity_px = read.disparity_px.view(),

@@ -12,10 +12,12 @@
 #include "apps/inputs/rectification_check.h"
 #include "apps/reports/remarks.h"
 #include "engine/error.h"
+#include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
+#include "engine/options/pair_source_settings.h"
 #include "engine/options/scene_mask_settings.h"
 #include "engine/rectification/stereo_calibration.h"
 
@@ -69,6 +71,7 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
   add_kitti_cameras_setting(settings, pair.kitti_cameras);
   add_scene_mask_settings(settings, pair.masks);
   add_rectification_check_setting(settings, pair.check_rectification);
+  add_white_level_setting(settings, pair.white_level);
 }
 
 void check_pair(const PairInput& pair, const Settings& settings) {
@@ -110,10 +113,13 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
       result.maps.left.disparity_px = read_disparity(pair.left_disparity, scale);
       result.maps.right.disparity_px = read_disparity(pair.right_disparity, scale);
       require_agreeing_maps(result.maps);
-    } else {
-      leave_out_masked(pair.masks, result.left, result.right);
     }
   });
+  Photograph* const images_read[] = {&result.left, &result.right};
+  tell_remark(scale_to_white_level(images_read, pair.white_level), common, report);
+  if (!pair.has_maps()) {
+    leave_out_masked(pair.masks, result.left, result.right);
+  }
   if (!pair.calibration.empty()) {
     const std::filesystem::path images[] = {pair.left, pair.right};
     choose_kitti_cameras(settings, common, pair.calibration, images, pair.kitti_cameras);

@@ -29,6 +29,7 @@ struct PairInput {
   std::optional<KittiCameras> kitti_cameras;
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();
+  std::optional<double> white_level;  ///< empty: see WhiteLevelSearch
   bool check_rectification = true;
   SceneMaskOptions masks;
 

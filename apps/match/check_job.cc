@@ -103,6 +103,9 @@ int run_check(CheckJob& job, const Settings& settings) {
     examined.found = report.timed_compute("examine", [&] {
       return examine_pair(pair.left, pair.right, job.sequence.match, execution);
     });
+    if (const auto& remark = session.pairs->white_level().remark; remark && index == 0) {
+      examined.found.remarks.insert(examined.found.remarks.begin(), *remark);
+    }
     for (const Remark& remark : examined.found.remarks) {
       report.add_remark(remark);
     }

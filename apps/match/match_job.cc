@@ -14,6 +14,7 @@
 #include "engine/io/maps/map_io.h"
 #include "engine/matching/options/match_values.h"
 #include "engine/matching/search/match_inputs.h"
+#include "engine/options/pair_source_settings.h"
 #include "engine/options/scene_mask_settings.h"
 
 namespace vantage::apps {
@@ -89,6 +90,7 @@ void add_file_settings(Settings& settings, MatchJob& job) {
   add_scene_mask_settings(settings, job.masks);
   add_volume_settings(settings, job.volume);
   add_rectification_check_setting(settings, job.check_rectification);
+  add_white_level_setting(settings, job.white_level);
 }
 
 void check_several(const MatchJob& job) {

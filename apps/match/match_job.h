@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,7 @@ struct MatchJob {
   std::string cyclopean_occlusion;
   /// Cameras stand one above the other, the left image's above: columns are searched.
   bool vertical = false;
+  std::optional<double> white_level;  ///< of all images; empty: see WhiteLevelSearch
   bool check_rectification = true;
   SceneMaskOptions masks;
 

@@ -22,6 +22,7 @@
 #include "apps/settings/applied_tuning.h"
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
+#include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/matching/options/method_names.h"
 #include "engine/matching/search/epipolar/rectified_map.h"
@@ -77,6 +78,11 @@ std::vector<Photograph> read_images(const MatchJob& job, RunReport& report) {
     images.push_back(report.timed_file_access("read", [&] { return read_photograph(input); }));
   }
   require_equal_sizes(job, images);
+  std::vector<Photograph*> all;
+  for (Photograph& image : images) {
+    all.push_back(&image);
+  }
+  tell_remark(scale_to_white_level(all, job.white_level), job.common, report);
   report.timed_file_access("read", [&] { leave_out_masked(job.masks, images[0], images[1]); });
   return images;
 }

@@ -16,6 +16,7 @@
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "apps/reports/rectify_results.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
 #include "engine/error.h"
 #include "engine/image/left_out.h"
@@ -151,6 +152,7 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
 
   const std::unique_ptr<PairSource> pairs = open_pair_source(job.input);
   check_pairs(*pairs, files);
+  tell_remark(pairs->white_level().remark, job.common, report);
   const int pair_count = pairs->pair_count();
   FramePair pair;
   report.timed_file_access("read", [&] { read_equal_pair(*pairs, 0, pair); });

@@ -54,9 +54,6 @@ std::string pixels_text(const ImageStatistics& image) {
                                  : image.channels == 3 ? "colour"
                                                        : "colour and alpha",
                                  image.bits);
-  if (image.origin.white_level) {
-    text += fmt::format(", white at {:g}", *image.origin.white_level);
-  }
   if (const auto& coding = image.origin.coding) {
     text += ", " + coding->codec;
     if (coding->step_grey_levels > 0) {
@@ -95,9 +92,6 @@ SettingValue image_values(const ImageStatistics& image) {
       {"channels", image.channels},       {"bits", image.bits},
       {"mean_grey", image.mean_grey},     {"black_share", image.black_share},
       {"white_share", image.white_share}, {"textureless_share", image.textureless_share}};
-  if (image.origin.white_level) {
-    values["white_level"] = *image.origin.white_level;
-  }
   if (const auto& coding = image.origin.coding) {
     values["codec"] = coding->codec;
     values["step_grey_levels"] = coding->step_grey_levels;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "apps/reports/run_report.h"
@@ -14,5 +15,11 @@ void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, 
 void tell_match(const MatchReport& match, const CommonOptions& common, RunReport& report);
 /// What a map is worth, as values of a report.
 SettingValue map_values(const MapShares& shares);
+
+/// The same of one, if there is one.
+inline void tell_remark(const std::optional<Remark>& remark, const CommonOptions& common,
+                        RunReport& report) {
+  tell_remarks({remark ? &*remark : nullptr, remark ? 1U : 0U}, common, report);
+}
 
 }  // namespace vantage::apps

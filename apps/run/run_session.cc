@@ -12,6 +12,7 @@
 #include "apps/process/interrupt.h"
 #include "apps/process/outputs.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/run/resumed_run.h"
 #include "apps/run/stream_run.h"
 #include "engine/error.h"
@@ -168,6 +169,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   }
   open_source(job, session);
   session.selection.shard = job.shard;
+  tell_remark(session.pairs->white_level().remark, job.common, report);
   for (const fs::path& file : session.pairs->files()) {
     files.add_input(file);
   }

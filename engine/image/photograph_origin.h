@@ -19,8 +19,8 @@ struct LossyCoding {
 /// What the file or stream of a photograph says about its values. Copies of a photograph and what
 /// is resampled from it keep it.
 struct PhotographOrigin {
-  /// The stored value that is white, where the file states another one than its type's largest, in
-  /// the unit of the pixels.
+  /// The value that is white in the unit of the pixels, where the file states it; the type's 255,
+  /// 65535 or 1 once a photograph was scaled to that.
   std::optional<double> white_level = {};
   std::optional<LossyCoding> coding = {};  ///< empty: lossless, or not known
 };

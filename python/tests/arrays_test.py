@@ -133,22 +133,30 @@ def test_floats_that_are_not_finite(pair, value):
         MATCHER.compute(left, pair[1])
 
 
-@pytest.mark.parametrize("change, found", [
-    (lambda image: image * np.float32(255), "0 to 255"), (lambda image: image - 0.5, "-0.5 to 0.5"),
+@pytest.mark.parametrize("dtype, white, others", [
+    (np.float32, 255, {}), (np.uint16, 1023, {}), (np.uint16, 4095, {"white_level": 4095}),
 ])
-def test_floats_of_another_range(pair, change, found):
-    images = [image.astype(np.float32) / 255 for image in pair]
-    images[0][0, :2] = [0], [1]
+def test_white_level(pair, dtype, white, others):
+    expected = MATCHER.compute(*pair).disparity
+    images = [np.round(image * (white / 255)).astype(dtype) for image in pair]
+    images[0][0, :2] = [0], [white]
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        MATCHER.compute(images[0] * np.float32(1.1), images[1])  # filters ring
-    images[0] = change(images[0])
-    message = f"left: the values of float32 are {found}, expected 0 to 1"
-    for call in [MATCHER.compute, vantage.rectify,
-                 lambda *both: vantage.synthesize(*both, disparities=(0, 15))]:
-        with pytest.warns(UserWarning, match=message) as caught:
-            call(*images)
-        assert len(caught) == 1 and caught[0].filename in [__file__, vantage.__file__]
+        MATCHER.compute(*[image / np.float32(230) for image in pair])  # filters ring
+    matcher = vantage.Matcher("realtime", (0, 15), search_size="full", **others)
+    if others:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            found = matcher.compute(*images).disparity
+    else:
+        with pytest.warns(UserWarning, match=f"white level: {white} .*brightest pixels") as caught:
+            found = matcher.compute(*images).disparity
+            matcher.compute(*images)
+            vantage.rectify(*images)
+            vantage.synthesize(*images, disparities=(0, 15))
+        assert len(caught) == 3
+        assert {one.filename for one in caught} <= {__file__, vantage.__file__}
+    assert np.mean(np.abs(found - expected) > 1) < 0.02
 
 
 def test_files(tmp_path, pair):

@@ -93,7 +93,8 @@ class Matcher:
                 posterior: bool = False) -> MatchResult:
         """The maps of images of equal size, a MatchResult.
 
-        left, right: arrays of uint8, uint16 or float32 (0 to 1), HxW or HxWx3.
+        left, right: arrays of uint8, uint16 or float32 (0 to 1), HxW or HxWx3. Others of fewer
+        bits or another scale are brought to it, see the option white_level.
         more, baselines: images of more cameras on the same line, and the positions of the cameras
         of right and of these relative to the first, positive to the right; left is then the
         reference, and disparities are those between left and right.
@@ -198,7 +199,7 @@ def rectify(left: _Image, right: _Image, calibration: _Rig = None, *, kept_outli
     """Rectifies a pair; without a calibration (or the path of one) the cameras are estimated from
     the images, up to scale: the baseline then has length 1.
 
-    options: threads. Returns RectifiedImages. Raises Error where the images show too little.
+    options: threads, white_level. Returns RectifiedImages. Raises Error where the images show too little.
     """
     return RectifiedImages(*_vantage.rectify(
         left, right, _calibration_of(calibration), float(kept_outline), bool(bgr), options))

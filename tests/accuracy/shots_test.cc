@@ -34,7 +34,7 @@ class TwoShots : public PairSource {
     }
     return true;
   }
-  void decode(FramePair& pair) const override {
+  void make_images(FramePair& pair) const override {
     const int index = pair.index;
     ++decoded;
     if (bad.contains(index)) {

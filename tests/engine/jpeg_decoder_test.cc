@@ -91,6 +91,8 @@ TEST(JpegDecoder, PixelsAgreeWithOpenCv) {
       ASSERT_EQ(image.width(), expected.cols);
       ASSERT_EQ(image.height(), expected.rows);
       ASSERT_EQ(image.channels(), expected.channels());
+      // Quality 75 halves the standard's 11, 12, 14, 12 and 10, rounded.
+      EXPECT_DOUBLE_EQ(photograph.origin.coding.value().step_grey_levels, 6);
       for (int y = 0; y < height; ++y) {
         ASSERT_TRUE(std::equal(image.row(y), image.row(y) + width * image.channels(),
                                expected.ptr<std::uint8_t>(y)))

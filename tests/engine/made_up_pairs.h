@@ -33,7 +33,7 @@ class MadeUpPairs : public PairSource {
     }
     return true;
   }
-  void decode(FramePair& pair) const override {
+  void make_images(FramePair& pair) const override {
     if (bad_to_decode.contains(pair.index)) {
       throw Error("left " + std::to_string(pair.index) + ": is truncated");
     }

@@ -122,6 +122,39 @@ void expect_left_images_alone(const PairSourceOptions& options) {
   }
 }
 
+TEST(PairSource, WhiteLevelIsThatOfTheWholeInput) {
+  const TemporaryFolder folder;
+  for (const std::string side : {"l/", "r/"}) {
+    std::filesystem::create_directories(folder / side);
+    for (int i = 0; i < 9; ++i) {  // fades in; of eight, pair 7 is not looked at
+      Image<std::uint16_t> image(2, 1);
+      image.fill(static_cast<std::uint16_t>(i == 7 ? 5000 : 500 * i));
+      image.at(1, 0) = static_cast<std::uint16_t>(i);
+      write_photograph(folder / (side + std::to_string(i) + ".png"), {std::move(image)});
+    }
+  }
+  PairSourceOptions options = two_cameras(folder / "l", folder / "r");
+  const auto source = open_pair_source(options);
+  EXPECT_EQ(source->white_level().of_type[1], 4095);
+  FramePair pair;
+  const auto value_at = [&](PairSource& from, int index) {
+    from.skip_to(index);
+    EXPECT_TRUE(from.fetch(pair));
+    from.decode(pair);
+    return std::get<Image<std::uint16_t>>(pair.right.pixels).at(0, 0);
+  };
+  EXPECT_EQ(value_at(*source, 1), std::lround(500 * 65535 / 4095.0));
+  EXPECT_THAT(pair.remarks, IsEmpty());
+  EXPECT_EQ(value_at(*source, 7), 65535);
+  EXPECT_THAT(pair.remarks, ElementsAre("50 % of its values are above the white level"));
+  options.white_level = 65535;
+  EXPECT_EQ(value_at(*open_pair_source(options), 1), 500);
+  options.white_level = 70000;
+  EXPECT_THAT(error_of([&] { open_pair_source(options); }), HasSubstr("at most 65535"));
+  options.white_level = -1;
+  EXPECT_THROW(open_pair_source(options), UsageError);
+}
+
 TEST(PairSource, LeftImagesAlone) {
   const TemporaryFolder folder;
   put_images(folder / "l", {0, 1, 2, 3, 4});

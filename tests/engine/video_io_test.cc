@@ -60,6 +60,27 @@ TEST(VideoIo, ReadsBackCountRateColoursAndOrder) {
   EXPECT_FALSE(reader.read(frame));
 }
 
+TEST(VideoIo, FramesSayHowTheyWereQuantised) {
+  const TemporaryFolder folder;
+  const auto coding_at = [&](VideoEncoding encoding, const char* name) {
+    VideoWriter writer(folder / name, 64, 32, encoding);
+    for (unsigned i = 0; i < 3; ++i) {
+      writer.write(noise<std::uint8_t>(64, 32, encoding.coding == VideoCoding::kH264 ? 3 : 1, i));
+    }
+    writer.finish();
+    Photograph frame;
+    frame.origin.coding = LossyCoding{.codec = "of another"};
+    VideoReader(folder / name).read(frame);
+    return frame.origin.coding;
+  };
+  // Six more of CRF, and so of QP, double the step.
+  const LossyCoding fine = coding_at({.crf = 20}, "fine.mp4").value();
+  const LossyCoding coarse = coding_at({.crf = 32}, "coarse.mp4").value();
+  EXPECT_EQ(fine.codec, "h264");
+  EXPECT_NEAR(coarse.step_grey_levels / fine.step_grey_levels, 4, 1);
+  EXPECT_NEAR(fine.step_grey_levels, std::exp2((20 - 4) / 6.0), 4);
+}
+
 TEST(VideoIo, ReusesTheMemoryOfTheFrame) {
   const TemporaryFolder folder;
   write_video(folder / "a.mp4", 32, 32, 3);

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/white_level.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/images/image_header.h"
@@ -22,6 +23,7 @@
 #include "engine/io/images/opencv_setup.h"
 #include "engine/io/images/png_decoder.h"
 #include "engine/io/images/png_encoder.h"
+#include "engine/io/images/stated_white_level.h"
 
 namespace vantage {
 namespace {
@@ -187,6 +189,7 @@ DecodedImage decode(const FileBytes& file, Photograph& memory) {
       std::optional<Photograph> usual = decode_usual_png(structure, memory);
       result.photograph =
           usual ? std::move(*usual) : decode_any_png(file, strip_png(structure), memory);
+      result.photograph.origin.white_level = png_white_level(file, result.photograph);
       break;
     }
     case ImageFormat::kJpeg:
@@ -196,6 +199,9 @@ DecodedImage decode(const FileBytes& file, Photograph& memory) {
     default:
       check_image_header(file, format);
       result.photograph = decode_with_opencv(file, file.all(), memory);
+      if (format == ImageFormat::kTiff) {
+        result.photograph.origin.white_level = tiff_white_level(file, result.photograph);
+      }
   }
   if (std::holds_alternative<Image<std::uint16_t>>(result.photograph.pixels)) {
     result.max_value = 65535;
@@ -211,21 +217,6 @@ void check_finite(const FileBytes& file, const Image<float>& image) {
         file.fail(fmt::format("its value at pixel ({}, {}) is {}, expected finite values",
                               i / image.channels(), y, row[i]));
       }
-    }
-  }
-}
-
-/// PNM files may define white as 1023, for example: photographs use the full range of their type.
-template <typename T>
-void stretch(Image<T>& image, unsigned max_value) {
-  constexpr unsigned kFull = sizeof(T) == 1 ? 255U : 65535U;
-  if (max_value == kFull) {
-    return;
-  }
-  for (int y = 0; y < image.height(); ++y) {
-    T* row = image.row(y);
-    for (int i = 0; i < image.width() * image.channels(); ++i) {
-      row[i] = static_cast<T>((row[i] * kFull + max_value / 2) / max_value);
     }
   }
 }
@@ -276,15 +267,15 @@ Photograph read_photograph(const std::filesystem::path& path, Photograph memory)
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
   DecodedImage stored = decode_image(file, std::move(memory));
-  std::visit(
-      [&]<typename T>(Image<T>& image) {
-        if constexpr (std::is_same_v<T, float>) {
-          check_finite(file, image);
-        } else {
-          stretch(image, static_cast<unsigned>(stored.max_value));
-        }
-      },
-      stored.photograph.pixels);
+  if (const auto* floats = std::get_if<Image<float>>(&stored.photograph.pixels)) {
+    check_finite(file, *floats);
+    return std::move(stored.photograph);
+  }
+  // PNM files may define white as 1023, for example. Many say 65535 whatever their values are.
+  const auto white = static_cast<double>(stored.max_value);
+  if (const WhiteLevel level{{white, white, 1}}; level.scales(stored.photograph)) {
+    level.apply(stored.photograph);
+  }
   return std::move(stored.photograph);
 }
 

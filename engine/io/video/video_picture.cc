@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/white_level.h"
 #include "engine/io/video/frame_quantisation.h"
 
 extern "C" {
@@ -46,6 +47,8 @@ void VideoPicture::convert(Photograph& photograph) {
   }
   try {
     converter->convert(*frame, photograph);
+    // Formats say how many bits they have.
+    photograph.origin.white_level = WhiteLevel::kOfTypes[photograph.pixels.index()];
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name_, error.what()));
   }

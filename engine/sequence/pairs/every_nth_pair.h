@@ -16,7 +16,6 @@ class EveryNthPair final : public PairSource {
   EveryNthPair(std::unique_ptr<PairSource> source, int first, int step);
 
   bool fetch(FramePair& pair) override;
-  void decode(FramePair& pair) const override { source_->decode(pair); }
   void skip_to(int index) override { next_index_ = index; }
   [[nodiscard]] int pair_count() const override { return pair_count_; }
   [[nodiscard]] FrameRange pairs_of(FrameRange input_frames) const override;
@@ -44,6 +43,7 @@ class EveryNthPair final : public PairSource {
   }
 
  private:
+  void make_images(FramePair& pair) const override { source_->decode(pair); }
   [[nodiscard]] int source_index(int index) const { return first_ + index * step_; }
 
   std::unique_ptr<PairSource> source_;

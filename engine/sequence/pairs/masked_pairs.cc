@@ -82,7 +82,7 @@ bool MaskedPairs::fetch(FramePair& pair) {
   return true;
 }
 
-void MaskedPairs::decode(FramePair& pair) const {
+void MaskedPairs::make_images(FramePair& pair) const {
   source_->decode(pair);
   if (!pair.wants_right) {
     return;  // only its shot is looked for

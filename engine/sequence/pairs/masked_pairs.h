@@ -19,7 +19,6 @@ class MaskedPairs final : public PairSource {
   MaskedPairs(std::unique_ptr<PairSource> source, SceneMaskOptions options, bool each_alone);
 
   bool fetch(FramePair& pair) override;
-  void decode(FramePair& pair) const override;
   void skip_to(int index) override {
     next_index_ = index;
     source_->skip_to(index);
@@ -31,6 +30,7 @@ class MaskedPairs final : public PairSource {
   [[nodiscard]] FrameRange pairs_of(FrameRange input_frames) const override {
     return source_->pairs_of(input_frames);
   }
+  [[nodiscard]] const WhiteLevel& white_level() const override { return source_->white_level(); }
   [[nodiscard]] int index_of(int pair) const override { return source_->index_of(pair); }
   [[nodiscard]] int input_frames() const override { return source_->input_frames(); }
   [[nodiscard]] int frames_kept() const override { return source_->frames_kept(); }
@@ -49,6 +49,7 @@ class MaskedPairs final : public PairSource {
   [[nodiscard]] std::vector<std::string> identities() const override;
 
  private:
+  void make_images(FramePair& pair) const override;
   void find_borders();
 
   std::unique_ptr<PairSource> source_;

@@ -26,7 +26,7 @@ bool PackedPairs::fetch(FramePair& pair) {
   return true;
 }
 
-void PackedPairs::decode(FramePair& pair) const {
+void PackedPairs::make_images(FramePair& pair) const {
   FetchedFrame& frame = pair.fetched[0];
   frame.decode();
   try {

@@ -14,7 +14,6 @@ class PackedPairs : public PairSource {
   PackedPairs(std::unique_ptr<FrameSource> source, StereoPacking packing);
 
   bool fetch(FramePair& pair) override;
-  void decode(FramePair& pair) const override;
   void skip_to(int index) override;
   [[nodiscard]] int pair_count() const override { return source_->frame_count(); }
   [[nodiscard]] std::string describe(int index) const override { return source_->describe(index); }
@@ -35,6 +34,7 @@ class PackedPairs : public PairSource {
   }
 
  private:
+  void make_images(FramePair& pair) const override;
   std::unique_ptr<FrameSource> source_;
   StereoPacking packing_;
   int next_index_ = 0;

@@ -24,6 +24,7 @@ namespace {
 
 constexpr int kMaxOffset = 1000000;
 constexpr int kMaxStep = 1000;
+constexpr int kPairsForWhiteLevel = 8;
 constexpr double kMinTakenSeconds = 0.001;
 constexpr double kMaxTakenSeconds = 86400;
 
@@ -145,16 +146,60 @@ void PairSourceOptions::validate() const {
   }
   validate_step(every);
   masks.validate();
+  validate_white_level(white_level);
+}
+
+void PairSource::make_images(FramePair& pair) const {
+  pair.fetched[0].decode();
+  std::swap(pair.left, pair.fetched[0].photograph);
+  if (pair.wants_right) {
+    pair.fetched[1].decode();
+    std::swap(pair.right, pair.fetched[1].photograph);
+  }
 }
 
 void PairSource::decode(FramePair& pair) const {
-  pair.fetched[0].decode();
-  pair.left.pixels.swap(pair.fetched[0].photograph.pixels);
+  make_images(pair);
+  double clipped = white_level_.apply(pair.left);
   if (pair.wants_right) {
-    pair.fetched[1].decode();
-    pair.right.pixels.swap(pair.fetched[1].photograph.pixels);
+    clipped = std::max(clipped, white_level_.apply(pair.right));
+    for (Photograph& photograph : pair.more) {
+      clipped = std::max(clipped, white_level_.apply(photograph));
+    }
+  }
+  if (clipped > 0) {
+    pair.remarks.push_back(
+        fmt::format("{:.2g} % of its values are above the white level", 100 * clipped));
   }
 }
+
+namespace {
+
+/// Of files; whole, so that parts of a run agree. Pairs that cannot be read do not count.
+WhiteLevel white_level_of(PairSource& pairs, std::optional<double> given) {
+  WhiteLevelSearch search(given);
+  const int count = pairs.pair_count();
+  const int looked_at = pairs.is_stream() ? 0 : std::min(count, kPairsForWhiteLevel);
+  FramePair pair;
+  for (int i = 0; i < looked_at && (i == 0 || search.guesses()); ++i) {
+    try {
+      pairs.skip_to(looked_at == 1 ? 0 : static_cast<int>(i * (count - 1LL) / (looked_at - 1)));
+      if (pairs.fetch(pair)) {
+        pairs.decode(pair);
+        search.add(pair.left);
+        search.add(pair.right);
+      }
+    } catch (const Error&) {
+      continue;  // the run itself reports bad frames
+    }
+  }
+  if (looked_at > 0) {
+    pairs.skip_to(0);
+  }
+  return search.found();
+}
+
+}  // namespace
 
 std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
   options.validate();
@@ -166,6 +211,9 @@ std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
   if (options.stereo == "-") {
     all = std::make_unique<StreamedPairs>(std::move(all));
   }
+  const bool is_film = options.stereo == "-" || !all->sound().file.empty();
+  all->set_white_level(is_film && !options.white_level ? WhiteLevel()
+                                                       : white_level_of(*all, options.white_level));
   if (options.masks.is_active()) {
     const bool are_photographs = !options.pairs.empty();
     all = std::make_unique<MaskedPairs>(std::move(all), options.masks, are_photographs);

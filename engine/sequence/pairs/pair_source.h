@@ -11,6 +11,7 @@
 #include "engine/image/disparity_range.h"
 #include "engine/image/scene_mask.h"
 #include "engine/image/stereo_packing.h"
+#include "engine/image/white_level.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/raw_video_shape.h"
 #include "engine/rectification/kitti_cameras.h"
@@ -98,6 +99,9 @@ struct PairSourceOptions {
   FrameStep every;
   /// What is left out of the images; not of those of `more`.
   SceneMaskOptions masks = {.left = std::string(SceneMaskOptions::kNone)};
+  /// Of all images, see WhiteLevelSearch. Empty: what files state, else what up to 8 pairs show,
+  /// evenly spaced from the first to the last; of films and streams that of their pixel format.
+  std::optional<double> white_level;
 
   /// Throws UsageError naming the field, its value and what was expected.
   void validate() const;
@@ -117,8 +121,11 @@ class PairSource {
   /// by decode().
   virtual bool fetch(FramePair& pair) = 0;
   /// Makes `left` and `right` from the fetched data: reads image files, converts the pictures of
-  /// videos, splits packed frames. Thread rule: concurrently for different pairs. Throws Error.
-  virtual void decode(FramePair& pair) const;
+  /// videos, splits packed frames; then scales them to the white level, and remarks on what that
+  /// clips. Thread rule: concurrently for different pairs. Throws Error.
+  void decode(FramePair& pair) const;
+  void set_white_level(WhiteLevel level) { white_level_ = std::move(level); }
+  [[nodiscard]] virtual const WhiteLevel& white_level() const { return white_level_; }
 
   /// Makes pair `index` (0 ≤ index ≤ pair_count()) the result of the next fetch().
   virtual void skip_to(int index) = 0;
@@ -168,6 +175,13 @@ class PairSource {
   [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
   /// One line per source: see FrameSource::identity().
   [[nodiscard]] virtual std::vector<std::string> identities() const = 0;
+
+ protected:
+  /// decode() without the white level.
+  virtual void make_images(FramePair& pair) const;
+
+ private:
+  WhiteLevel white_level_;
 };
 
 /// Throws Error when a source cannot be opened, UsageError for invalid options.

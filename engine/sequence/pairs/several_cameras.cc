@@ -56,12 +56,12 @@ bool SeveralCameras::fetch(FramePair& pair) {
   return true;
 }
 
-void SeveralCameras::decode(FramePair& pair) const {
+void SeveralCameras::make_images(FramePair& pair) const {
   pairs_->decode(pair);
   pair.more.resize(pair.more_fetched.size());
   for (std::size_t k = 0; k < pair.more.size(); ++k) {
     pair.more_fetched[k].decode();
-    pair.more[k].pixels.swap(pair.more_fetched[k].photograph.pixels);
+    std::swap(pair.more[k], pair.more_fetched[k].photograph);
   }
 }
 

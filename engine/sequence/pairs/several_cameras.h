@@ -17,7 +17,6 @@ class SeveralCameras final : public PairSource {
                  std::vector<std::unique_ptr<FrameSource>> more);
 
   bool fetch(FramePair& pair) override;
-  void decode(FramePair& pair) const override;
   void skip_to(int index) override;
   [[nodiscard]] int pair_count() const override { return pair_count_; }
   [[nodiscard]] std::string describe(int index) const override;
@@ -30,6 +29,7 @@ class SeveralCameras final : public PairSource {
   [[nodiscard]] std::vector<std::string> identities() const override;
 
  private:
+  void make_images(FramePair& pair) const override;
   /// A camera, and the frame of the result of its next fetch().
   struct Camera {
     std::unique_ptr<FrameSource> source;

@@ -17,7 +17,6 @@ class StreamedPairs final : public PairSource {
   explicit StreamedPairs(std::unique_ptr<PairSource> source) : source_(std::move(source)) {}
 
   bool fetch(FramePair& pair) override;
-  void decode(FramePair& pair) const override { source_->decode(pair); }
   /// The first pair that is fetched is the first that is held. Pairs before it are dropped.
   void skip_to(int index) override { next_index_ = index; }
   [[nodiscard]] bool is_stream() const override { return true; }
@@ -45,6 +44,7 @@ class StreamedPairs final : public PairSource {
   }
 
  private:
+  void make_images(FramePair& pair) const override { source_->decode(pair); }
   /// What fetch() gave, or threw.
   struct Held {
     VideoPicture picture;
