@@ -57,7 +57,13 @@ std::string command_of(const CheckJob& job, const Settings& settings, const Chec
   } else {
     text = fmt::format("vantage run --left {} --right {} -o results", left, right);
   }
-  return job.calibration.empty() ? text : text + " --calibration " + shell_word(job.calibration);
+  if (!job.calibration.empty()) {
+    text += " --calibration " + shell_word(job.calibration);
+  }
+  if (job.input.white_level) {
+    text += fmt::format(" --white-level {}", *job.input.white_level);
+  }
+  return text;
 }
 
 /// Of a match of the pair, or of a run of all pairs.
