@@ -73,6 +73,16 @@ void RunReport::add_match(const MatchReport& match) {
   finest_cells_ += match.finest_cells;
   finest_pixels_ += match.finest_pixels;
   set_plan(match.plan);
+  switch (match.noise.kind) {
+    case NoiseKind::kNone:
+      break;
+    case NoiseKind::kSensor:
+      add_result("noise", {{"kind", "sensor"}, {"grey_levels", match.noise.grey_levels}});
+      break;
+    case NoiseKind::kCodec:
+      add_result("noise", {{"kind", "codec"}, {"block_score", match.noise.block_score}});
+      break;
+  }
 }
 
 void RunReport::set_plan(const scheduler::ChainPlan& plan) {

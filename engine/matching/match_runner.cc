@@ -54,7 +54,33 @@ void set_needs(const SearchAbilities& abilities, SearchJob& job) {
 }  // namespace
 
 MatchRunner::MatchRunner(const ResolvedMatchOptions& options, Execution& execution)
-    : options_(options), execution_(execution) {}
+    : options_(options), of_coded_(options), execution_(execution) {
+  of_coded_.parameters = options.parameters_of_coded.value_or(options.parameters);
+}
+
+NoiseTreatment MatchRunner::treatment_of(const MatchCall& call) {
+  std::vector<const Photograph*> photographs;
+  for (const SearchedPhotograph& image : call.images) {
+    photographs.push_back(image.photograph);
+  }
+  const bool has_rows = call.baselines.empty() && call.grids == nullptr;
+  return noise_treatment(photographs, options_.noise,
+                         has_rows ? std::optional(options_.disparities) : std::nullopt, execution_);
+}
+
+MatchCall MatchRunner::treated(const MatchCall& call, const NoiseTreatment& treatment,
+                               std::vector<SmoothedPhotograph>& smoothed) {
+  MatchCall result = call;
+  smoothed.resize(call.images.size());
+  for (std::size_t i = 0; i < call.images.size(); ++i) {
+    const Photograph& photograph = *call.images[i].photograph;
+    const bool is_colour =
+        options_.parameters.colour == ColourUse::kChannels && photograph.channels() >= 3;
+    result.images[i].photograph =
+        &smoothed[i].make(photograph, is_colour ? 3 : 1, treatment.filter, execution_);
+  }
+  return result;
+}
 
 /// keeps_costs: for the pair after it.
 MatchSize MatchRunner::size_of(const MatchCall& call, bool keeps_costs) const {
@@ -68,9 +94,10 @@ MatchSize MatchRunner::size_of(const MatchCall& call, bool keeps_costs) const {
                           : execution_.options().level_memory_bytes.value_or(kDefaultLevelBytes)};
 }
 
-SearchJob MatchRunner::job_of(const MatchCall& call, const MatchRequest& request,
-                              DisparityMaps& maps, MatchReport& report, StageClock& clock) const {
-  return {.options = options_,
+SearchJob MatchRunner::job_of(const ResolvedMatchOptions& options, const MatchCall& call,
+                              const MatchRequest& request, DisparityMaps& maps, MatchReport& report,
+                              StageClock& clock) const {
+  return {.options = options,
           .execution = execution_,
           .request = request,
           .maps = maps,
@@ -79,10 +106,10 @@ SearchJob MatchRunner::job_of(const MatchCall& call, const MatchRequest& request
           .images = call.images,
           .reference_side = call.reference_side,
           .grids = call.grids,
-          .parameters = options_.parameters};
+          .parameters = options.parameters};
 }
 
-void MatchRunner::run(const MatchCall& call, const MatchRequest& request, DisparityMaps& maps,
+void MatchRunner::run(const MatchCall& given, const MatchRequest& request, DisparityMaps& maps,
                       MatchReport* report) {
   MatchReport own_report;
   MatchReport& times = report != nullptr ? *report : own_report;
@@ -92,19 +119,32 @@ void MatchRunner::run(const MatchCall& call, const MatchRequest& request, Dispar
     times = {};
   }
   StageClock clock(times);
-  SearchJob job = job_of(call, request, maps, times, clock);
+  clock.start("noise");
+  const NoiseTreatment treatment = treatment_of(given);
+  const auto smoothed = smoothed_.borrow();
+  MatchCall call = given;
+  if (treatment.acts()) {
+    call = treated(given, treatment, *smoothed);
+    if (!is_resumed) {
+      times.note("noise", treatment.text());
+    }
+  }
+  times.noise = treatment.found;
+  const bool is_coded = treatment.found.kind == NoiseKind::kCodec;
+  const ResolvedMatchOptions& options = is_coded ? of_coded_ : options_;
+  SearchJob job = job_of(options, call, request, maps, times, clock);
   const MatchSize size = size_of(call, request.previous != nullptr);
-  const SearchEntry& entry = search_of(options_, size);
+  const SearchEntry& entry = search_of(options, size);
   if (request.previous != nullptr) {
     require_reuse(entry.abilities, job);
   }
-  require_abilities(entry.abilities, options_, request);
+  require_abilities(entry.abilities, options, request);
   clock.start("prepare");
-  const std::string obstacle = memory_obstacle(options_, size, execution_.machine().memory_bytes);
+  const std::string obstacle = memory_obstacle(options, size, execution_.machine().memory_bytes);
   if (!obstacle.empty()) {
     throw Error(obstacle);
   }
-  job.plan = entry.plan(options_, size);
+  job.plan = entry.plan(options, size);
   const auto search = entry.start(job, pools_);
   if (is_resumed) {
     search->resume(*request.deferred);
@@ -196,7 +236,7 @@ std::vector<scheduler::ChainPlan> MatchRunner::plans(const MatchCall& call,
   DisparityMaps maps;  // never read
   MatchReport report;  // never read
   StageClock clock(report);
-  SearchJob job = job_of(call, request, maps, report, clock);
+  SearchJob job = job_of(options_, call, request, maps, report, clock);
   ResolvedMatchOptions at_full_size = options_;
   at_full_size.parameters.search_size = SearchSize::kFull;
   const MatchSize size = size_of(call, false);
@@ -210,6 +250,13 @@ std::vector<scheduler::ChainPlan> MatchRunner::plans(const MatchCall& call,
   return search->plans(job.task_of(call.reference_side), executions);
 }
 
-void MatchRunner::add_memory_use(MemoryUse& use) const { pools_.add_memory_use(use); }
+void MatchRunner::add_memory_use(MemoryUse& use) const {
+  pools_.add_memory_use(use);
+  smoothed_.for_each_idle([&use](const std::vector<SmoothedPhotograph>& images) {
+    for (const SmoothedPhotograph& image : images) {
+      use.add("smoothed images", image.held_bytes());
+    }
+  });
+}
 
 }  // namespace vantage

@@ -6,6 +6,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/memory_use.h"
+#include "engine/matching/noise/noise_treatment.h"
 #include "engine/matching/search_table.h"
 
 namespace vantage {
@@ -36,16 +37,23 @@ class MatchRunner {
   void add_memory_use(MemoryUse& use) const;
 
  private:
+  /// The call with images as costs see them; the report says what was found in them.
+  [[nodiscard]] MatchCall treated(const MatchCall& call, const NoiseTreatment& treatment,
+                                  std::vector<SmoothedPhotograph>& smoothed);
+  [[nodiscard]] NoiseTreatment treatment_of(const MatchCall& call);
   [[nodiscard]] MatchSize size_of(const MatchCall& call, bool keeps_costs) const;
-  [[nodiscard]] SearchJob job_of(const MatchCall& call, const MatchRequest& request,
-                                 DisparityMaps& maps, MatchReport& report, StageClock& clock) const;
+  [[nodiscard]] SearchJob job_of(const ResolvedMatchOptions& options, const MatchCall& call,
+                                 const MatchRequest& request, DisparityMaps& maps,
+                                 MatchReport& report, StageClock& clock) const;
   /// Makes unknown, and tells, what is left out of the images.
   void erase_left_out(const MatchCall& call, DisparityMaps& maps, MatchReport& report) const;
   void examine(const MatchCall& call, SearchJob& job) const;
   [[nodiscard]] bool choose_tiles(MapSearch& search, SearchJob& job) const;
 
   const ResolvedMatchOptions& options_;
+  ResolvedMatchOptions of_coded_;  ///< options_ for images that a lossy codec rounded
   Execution& execution_;
+  ObjectPool<std::vector<SmoothedPhotograph>> smoothed_;
   SearchPools pools_;
 };
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/error.h"
+#include "engine/matching/noise/noise_filter.h"
 #include "engine/matching/search/epipolar/epipolar_search.h"
 #include "engine/matching/search/reduced/reduction.h"
 
@@ -103,7 +104,13 @@ void require_abilities(const SearchAbilities& abilities, const ResolvedMatchOpti
 }
 
 SearchPlan search_plan(const ResolvedMatchOptions& options, const MatchSize& size) {
-  return search_of(options, size).plan(options, size);
+  SearchPlan plan = search_of(options, size).plan(options, size);
+  if (options.noise != 0) {
+    const bool is_colour = options.parameters.colour == ColourUse::kChannels && size.channels >= 3;
+    plan.image_bytes += smoothed_bytes(size.pixels(), is_colour ? 3 : 1,
+                                       std::max<std::size_t>(2, size.baselines.size() + 1));
+  }
+  return plan;
 }
 
 std::string memory_obstacle(const ResolvedMatchOptions& options, const MatchSize& size,

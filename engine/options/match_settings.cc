@@ -60,6 +60,28 @@ void add_part_settings(Settings& settings, MatchOptions& options) {
                   "pixels of the given ones; --disparities and all files are in these");
 }
 
+void add_noise_setting(Settings& settings, MatchOptions& options) {
+  Setting& noise = settings.add(
+      "noise", "auto|none|LEVEL",
+      "Noise of the images, which are smoothed before they are compared: standard deviation in "
+      "grey "
+      "levels, 0 to 64; none: images are compared as they are; auto: with a preset, noise and "
+      "traces of lossy compression are looked for in each pair, clean images stay as they are");
+  noise.set = [&options](const SettingValue& value) {
+    if (is_word(value, "auto")) {
+      options.noise.reset();
+    } else {
+      options.noise = is_word(value, "none") ? 0 : to_number(value);
+    }
+  };
+  noise.get = [&options]() -> SettingValue {
+    if (!options.noise) {
+      return "auto";
+    }
+    return *options.noise == 0 ? SettingValue("none") : SettingValue(*options.noise);
+  };
+}
+
 /// Name → value in force of all parameters that are read.
 SettingValue resolved_parameters(const MatchOptions& options) {
   MatchOptions in_force = options.fully_resolved();
@@ -133,6 +155,7 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
                                       : "none";
   };
   add_part_settings(settings, options);
+  add_noise_setting(settings, options);
   add_method_settings(settings, options);
   add_parameter_settings(settings, options);
   settings.show_resolved([&options] { return resolved_parameters(options); });

@@ -25,9 +25,11 @@ static_assert(kernels::kMaxSurfaceRadiusPx == 16, "so say the limits of surface-
 namespace {
 
 constexpr int kMaxDisparity = 65535;
+constexpr double kMaxNoise = 64;  // grey levels
 
-PresetSettings settings_of(const std::optional<MatchPreset>& preset) {
-  return preset ? preset_settings(*preset) : PresetSettings{};
+PresetSettings settings_of(const std::optional<MatchPreset>& preset,
+                           NoiseKind kind = NoiseKind::kNone) {
+  return preset ? preset_settings(*preset, kind) : PresetSettings{};
 }
 
 void validate_range(std::string_view field, DisparityRange range) {
@@ -160,6 +162,11 @@ void MatchOptions::validate() const {
   // Counts the candidates, which may be too many for an int until they are checked.
   const RefinementOptions of_maps = resolved_refinement();
   require_within_limits(of_maps);
+  if (noise && !(*noise >= 0 && *noise <= kMaxNoise)) {
+    throw UsageError(
+        fmt::format("noise is {}, expected auto, none or a number of grey levels from 0 to {}",
+                    *noise, kMaxNoise));
+  }
   validate_part(roi, scale);
   refuse_combinations(CombinationScope::kMatch, values_of(*this, in_force, of_maps));
   require_read(parameters, in_force, chosen());
@@ -188,8 +195,12 @@ std::string MatchOptions::chosen() const {
   return text;
 }
 
-MethodParameters MatchOptions::resolved() const {
-  PresetSettings settings = settings_of(preset_in_force());
+std::optional<double> MatchOptions::noise_in_force() const {
+  return noise || preset_in_force() ? noise : std::optional(0.0);
+}
+
+MethodParameters MatchOptions::resolved(NoiseKind kind) const {
+  PresetSettings settings = settings_of(preset_in_force(), kind);
   if (parameters.cost && parameters.cost != settings.parameters.cost) {
     settings.parameters.sigma_measurement.reset();  // it is in units of the preset's cost
   }
@@ -221,6 +232,8 @@ ResolvedMatchOptions MatchOptions::in_force() const {
           .disparities_y = disparities_y,
           .parameters = resolved(),
           .refinement = raw ? std::nullopt : std::optional(resolved_refinement()),
+          .noise = noise_in_force(),
+          .parameters_of_coded = resolved(NoiseKind::kCodec),
           .roi = roi,
           .scale = scale};
 }
@@ -229,6 +242,7 @@ MatchOptions MatchOptions::fully_resolved() const {
   MatchOptions result = *this;
   result.method = method.value_or(settings_of(preset_in_force()).method);
   result.preset.reset();
+  result.noise = noise_in_force();
   result.parameters = as_overrides(resolved());
   result.refinement = all_set<RefinementOverrides>(resolved_refinement());
   return result;

@@ -6,6 +6,7 @@
 #include "engine/image/disparity_range.h"
 #include "engine/image/image_region.h"
 #include "engine/image/side.h"
+#include "engine/matching/noise/noise_kind.h"
 #include "engine/matching/options/method_rules.h"
 #include "engine/refinement/refinement_options.h"
 
@@ -26,6 +27,9 @@ struct ResolvedMatchOptions {
   std::optional<DisparityRange> disparities_y;
   MethodParameters parameters;
   std::optional<RefinementOptions> refinement;  ///< empty: maps keep the winners
+  std::optional<double> noise = 0;              ///< MatchOptions::noise_in_force()
+  /// Instead of `parameters` for images that a lossy codec rounded.
+  std::optional<MethodParameters> parameters_of_coded = {};
   std::optional<ImageRegion> roi = std::nullopt;
   double scale = 1;
 
@@ -55,6 +59,9 @@ struct MatchOptions {
   /// Above 0, at most 1: images are matched at this size, and maps brought back to theirs.
   double scale = 1;
   MethodOverrides parameters;
+  /// Standard deviation of the noise that costs are made insensitive to, grey levels; 0: images are
+  /// matched as they are; empty: what is found in the images of a preset, nothing without one.
+  std::optional<double> noise;
   Side reference = Side::kLeft;  ///< whose map results, where no MatchRequest names others
   /// Winner-take-all only: no refinement (sub-pixel stays as set above).
   bool raw = false;
@@ -67,8 +74,11 @@ struct MatchOptions {
   /// The choice in words: "preset balanced", "method ssd with aggregation gaussian", "preset
   /// balanced with cost census".
   [[nodiscard]] std::string chosen() const;
-  /// The parameters in force: fields of `parameters`, else the preset's, else the method's.
-  [[nodiscard]] MethodParameters resolved() const;
+  /// The parameters in force for images with such noise: fields of `parameters`, else the preset's,
+  /// else the method's.
+  [[nodiscard]] MethodParameters resolved(NoiseKind kind = NoiseKind::kNone) const;
+  /// `noise`, or 0 where nothing is to be found.
+  [[nodiscard]] std::optional<double> noise_in_force() const;
   /// The refinement in force unless `raw`: fields of `refinement`, else the preset's, else: no
   /// snapping, a cross-check of whole maps within max(1, D/15) px, a confidence above 0 for
   /// gradient evidence and any confidence for other costs, speckles kept, no surface fit, fill at

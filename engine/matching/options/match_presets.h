@@ -11,6 +11,7 @@ struct PresetSettings {
   RefinementOverrides refinement;
 };
 
-PresetSettings preset_settings(MatchPreset preset);
+/// kind: of the images that are matched.
+PresetSettings preset_settings(MatchPreset preset, NoiseKind kind = NoiseKind::kNone);
 
 }  // namespace vantage

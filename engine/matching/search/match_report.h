@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/matching/noise/noise_estimate.h"
 #include "engine/matching/search/coarse_to_fine/search_report.h"
 #include "engine/matching/worth/map_shares.h"
 #include "engine/remark.h"
@@ -27,6 +28,7 @@ struct MatchReport : SearchReport {
   /// Of the left map if it was requested, else of the right one.
   std::optional<MapShares> shares;
   std::vector<Remark> remarks;
+  FoundNoise noise;  ///< in the images of the call
 
   void warn(std::string_view subject, std::string text) {
     remarks.push_back({Remark::Kind::kWarning, subject, std::move(text)});
