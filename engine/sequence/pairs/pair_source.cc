@@ -160,6 +160,9 @@ void PairSource::make_images(FramePair& pair) const {
 
 void PairSource::decode(FramePair& pair) const {
   make_images(pair);
+  if (!is_white_level_known_) {
+    return;
+  }
   double clipped = white_level_.apply(pair.left);
   if (pair.wants_right) {
     clipped = std::max(clipped, white_level_.apply(pair.right));
