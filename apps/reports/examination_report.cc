@@ -63,6 +63,18 @@ std::string pixels_text(const ImageStatistics& image) {
   return text;
 }
 
+std::string noise_text(const FoundNoise& noise) {
+  switch (noise.kind) {
+    case NoiseKind::kNone:
+      break;
+    case NoiseKind::kSensor:
+      return fmt::format("{:.1f} grey levels", noise.grey_levels);
+    case NoiseKind::kCodec:
+      return "blocks of a lossy codec";
+  }
+  return "none that matters";
+}
+
 std::string pair_text(const PairExamination& found) {
   const auto& [left, right] = found.images;
   const std::string size = pixels_text(left);
@@ -75,6 +87,7 @@ std::string pair_text(const PairExamination& found) {
   text += line("sides", sides_text(found.rows));
   text += line("rows", rows_text(found.rows));
   if (found.disparities) {
+    text += line("noise", noise_text(found.noise));
     text += line("range", to_text(*found.disparities));
     text += line("match", fmt::format("{} in {:.2f} s", to_text(found.shares), found.seconds));
   }
@@ -115,6 +128,7 @@ SettingValue pair_values(const ExaminedPair& pair) {
   }
   if (found.disparities) {
     values["disparities"] = to_text(*found.disparities);
+    values["noise"] = noise_values(found.noise);
     values["map"] = map_values(found.shares);
     values["seconds"] = found.seconds;
   }

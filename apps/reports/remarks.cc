@@ -25,6 +25,18 @@ void tell_match(const MatchReport& match, const CommonOptions& common, RunReport
   tell_remarks(match.remarks, common, report);
 }
 
+SettingValue noise_values(const FoundNoise& noise) {
+  switch (noise.kind) {
+    case NoiseKind::kNone:
+      break;
+    case NoiseKind::kSensor:
+      return {{"kind", "sensor"}, {"grey_levels", noise.grey_levels}};
+    case NoiseKind::kCodec:
+      return {{"kind", "codec"}, {"block_score", noise.block_score}};
+  }
+  return nullptr;
+}
+
 SettingValue map_values(const MapShares& shares) {
   return {{"matched_share", shares.matched},
           {"filled_share", shares.filled},

@@ -15,6 +15,8 @@ void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, 
 void tell_match(const MatchReport& match, const CommonOptions& common, RunReport& report);
 /// What a map is worth, as values of a report.
 SettingValue map_values(const MapShares& shares);
+/// Noise that was found, likewise; null where there is none.
+SettingValue noise_values(const FoundNoise& noise);
 
 /// The same of one, if there is one.
 inline void tell_remark(const std::optional<Remark>& remark, const CommonOptions& common,

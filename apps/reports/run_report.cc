@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/trace_file.h"
 #include "engine/build_info.h"
 #include "engine/io/files/atomic_file.h"
@@ -73,15 +74,8 @@ void RunReport::add_match(const MatchReport& match) {
   finest_cells_ += match.finest_cells;
   finest_pixels_ += match.finest_pixels;
   set_plan(match.plan);
-  switch (match.noise.kind) {
-    case NoiseKind::kNone:
-      break;
-    case NoiseKind::kSensor:
-      add_result("noise", {{"kind", "sensor"}, {"grey_levels", match.noise.grey_levels}});
-      break;
-    case NoiseKind::kCodec:
-      add_result("noise", {{"kind", "codec"}, {"block_score", match.noise.block_score}});
-      break;
+  if (match.noise.kind != NoiseKind::kNone) {
+    add_result("noise", noise_values(match.noise));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -34,10 +35,24 @@ void try_match(const Photograph& left, const Photograph& right, MatchOptions opt
   examination.disparities = used.disparities;
   examination.remarks = std::move(report.remarks);
   examination.shares = report.shares.value();
-  if (examination.shares.matched < kMinMatchedShare) {
-    examination.problems.push_back(
-        fmt::format("only {:.0f} % of the pixels can be matched, expected at least {:.0f} %",
-                    100 * examination.shares.matched, 100 * kMinMatchedShare));
+  examination.noise = options.scale < 1
+                          ? find_noise(std::array{&left, &right}, used.disparities, execution)
+                          : report.noise;  // that of images as they are
+}
+
+void examine_images(const Photograph& left, const Photograph& right, Execution& execution,
+                    PairExamination& examination) {
+  const FoundNoise& noise = examination.noise;
+  const double noise_grey = noise.kind == NoiseKind::kSensor ? noise.grey_levels : 0;
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    const bool is_left = side == Side::kLeft;
+    ImageStatistics& image = examination.images[index_of(side)];
+    image = image_statistics(is_left ? left : right, noise_grey, execution);
+    if (image.textureless_share > kMaxTexturelessShare) {
+      examination.problems.push_back(fmt::format("{:.1f} % of the {} image have no texture",
+                                                 100 * image.textureless_share,
+                                                 is_left ? "left" : "right"));
+    }
   }
 }
 
@@ -50,24 +65,23 @@ PairExamination examine_pair(const Photograph& left, const Photograph& right,
                             left.width(), left.height(), right.width(), right.height()));
   }
   PairExamination examination;
-  for (const Side side : {Side::kLeft, Side::kRight}) {
-    const bool is_left = side == Side::kLeft;
-    ImageStatistics& image = examination.images[index_of(side)];
-    image = image_statistics(is_left ? left : right, 0, execution);
-    if (image.textureless_share > kMaxTexturelessShare) {
-      examination.problems.push_back(fmt::format("{:.1f} % of the {} image have no texture",
-                                                 100 * image.textureless_share,
-                                                 is_left ? "left" : "right"));
-    }
+  std::string failure;
+  try {
+    try_match(left, right, options, execution, examination);
+  } catch (const Error& error) {
+    failure = error.what();
   }
   if (content_hash(left) == content_hash(right)) {
     examination.problems.emplace_back("left and right are the same picture");
   }
+  examine_images(left, right, execution, examination);
   examination.rows = check_rectification(left, right);
-  try {
-    try_match(left, right, options, execution, examination);
-  } catch (const Error& error) {
-    examination.problems.emplace_back(error.what());
+  if (!failure.empty()) {
+    examination.problems.push_back(failure);
+  } else if (examination.shares.matched < kMinMatchedShare) {
+    examination.problems.push_back(
+        fmt::format("only {:.0f} % of the pixels can be matched, expected at least {:.0f} %",
+                    100 * examination.shares.matched, 100 * kMinMatchedShare));
   }
   return examination;
 }

@@ -8,6 +8,7 @@
 #include "engine/examination/image_statistics.h"
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
+#include "engine/matching/noise/noise_estimate.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/worth/map_shares.h"
 #include "engine/rectification/vertical_error.h"
@@ -17,8 +18,9 @@ namespace vantage {
 
 /// What a pair is like, and what a match of it is worth.
 struct PairExamination {
-  std::array<ImageStatistics, 2> images;      ///< by index_of(Side)
-  std::optional<VerticalError> rows;          ///< empty: too few points in common
+  std::array<ImageStatistics, 2> images;  ///< by index_of(Side)
+  std::optional<VerticalError> rows;      ///< empty: too few points in common
+  FoundNoise noise;
   std::optional<DisparityRange> disparities;  ///< that were searched; empty: there was no match
   MapShares shares;                           ///< of the left map
   double seconds = 0;                         ///< of the match, and of finding its range
