@@ -4,7 +4,9 @@
 #include "apps/settings/command_line.h"
 #include "engine/image/stereo_packing.h"
 #include "engine/options/calibration_settings.h"
+#include "engine/options/match_settings.h"
 #include "engine/options/pair_source_settings.h"
+#include "engine/options/scene_mask_settings.h"
 #include "engine/options/settings.h"
 
 namespace vantage::apps {
@@ -24,7 +26,9 @@ void add_check_settings(Settings& settings, CheckJob& job) {
   settings.input_path("calibration", job.calibration, "FILE",
                       "Cameras, to rectify the pair first: OpenCV, Middlebury or KITTI file");
   add_kitti_cameras_setting(settings, job.kitti_cameras);
+  add_scene_mask_settings(settings, job.input.masks, true);
   add_white_level_setting(settings, job.input.white_level);
+  add_match_settings(settings, job.sequence.match);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(

@@ -13,6 +13,7 @@
 #include "apps/reports/examination_report.h"
 #include "engine/error.h"
 #include "engine/jobs/sequence_session.h"
+#include "engine/options/match_settings.h"
 
 namespace vantage::apps {
 namespace {
@@ -36,9 +37,26 @@ void check(CheckJob& job, const Settings& settings) {
     job.input.right = job.right;
   }
   job.input.validate();
+  job.sequence.match.validate();
   job.common.execution.validate();
   FileChecks files(settings);
   check_common_files(job.common, files);
+}
+
+/// What the user gave `check` beside images and the like, as options of another command.
+std::string given_options(const Settings& settings) {
+  std::string text;
+  for (const Setting& setting : settings.all()) {
+    const bool is_of_match = setting.changes_results && !setting.positional;
+    if (is_of_match && settings.is_set(setting.name) && !setting.is_empty()) {
+      text += " --" + setting.name;
+      const SettingValue value = setting.get();
+      if (!setting.flag) {
+        text += " " + shell_word(value.is_string() ? value.get<std::string>() : value.dump());
+      }
+    }
+  }
+  return text;
 }
 
 /// The command that makes maps of what was checked, or rectifies it first.
@@ -46,24 +64,17 @@ std::string command_of(const CheckJob& job, const Settings& settings, const Chec
   const bool is_exchanged = checked.looks_exchanged();
   const std::string left = shell_word(is_exchanged ? job.right : job.left);
   const std::string right = shell_word(is_exchanged ? job.left : job.right);
-  std::string text;
   if (job.right.empty()) {
-    text = fmt::format("vantage run --stereo {} --packing {} -o results", shell_word(job.left),
-                       settings.values()["packing"].get<std::string>());
-  } else if (checked.is_unrectified() && job.calibration.empty()) {
-    text = fmt::format("vantage rectify {} {} -o rectified", left, right);
-  } else if (checked.pair_count == 1) {
-    text = fmt::format("vantage match {} {} -o disparity.pfm", left, right);
-  } else {
-    text = fmt::format("vantage run --left {} --right {} -o results", left, right);
+    return fmt::format("vantage run --stereo {} -o results", shell_word(job.left)) +
+           given_options(settings);
   }
-  if (!job.calibration.empty()) {
-    text += " --calibration " + shell_word(job.calibration);
+  if (checked.is_unrectified() && job.calibration.empty()) {
+    return fmt::format("vantage rectify {} {} -o rectified", left, right);
   }
-  if (job.input.white_level) {
-    text += fmt::format(" --white-level {}", *job.input.white_level);
-  }
-  return text;
+  return (checked.pair_count == 1
+              ? fmt::format("vantage match {} {} -o disparity.pfm", left, right)
+              : fmt::format("vantage run --left {} --right {} -o results", left, right)) +
+         given_options(settings);
 }
 
 /// Of a match of the pair, or of a run of all pairs.
@@ -81,7 +92,7 @@ std::size_t memory_bytes(const CheckJob& job, const CheckedInput& checked,
 
 int run_check(CheckJob& job, const Settings& settings) {
   check(job, settings);
-  CommandWork work(settings, job.common);
+  CommandWork work(settings, job.common, reported_settings(settings, job.sequence.match));
   RunReport& report = work.report;
   Execution& execution = work.execution;
   SequenceSession session;
