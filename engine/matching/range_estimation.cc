@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <numeric>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "engine/error.h"
 #include "engine/image/intensity_rows.h"
-#include "engine/matching/stereo_matcher.h"
+#include "engine/matching/estimation/window_matches.h"
+#include "engine/matching/options/match_options.h"
 
 namespace vantage {
 namespace {
@@ -23,69 +26,73 @@ constexpr int kUsualFactor = 4;
 constexpr int kMinWidthPx = 128;
 constexpr int kMaxWidthPx = 320;
 
-// Pixels of the reduced images.
-constexpr int kMinRegionPixels = 10;
-/// Winners below this confidence are ignored: in uniform areas all disparities are equally likely.
-constexpr double kMinConfidence = 0.3;
-/// Disparities separated from all others by more than this, plus this fraction of them, are
-/// outliers.
-constexpr float kGapPx = 2;
-constexpr float kGapRatio = 0.1F;
-/// Winners of surfaces at infinity are within this of 0.
-constexpr float kExactnessPx = 0.4F;
-
-// Shares of the pixels matched in both images.
-/// This share at either end may be wrong.
-constexpr double kStrayShare = 0.0002;
-/// Separate groups count from this share on: repeated texture causes wrong matches in small areas.
-/// A group far behind everything else, but not behind infinity, is a mostly hidden background.
-constexpr double kApartShare = 0.0025;
-constexpr double kBehindShare = 0.0003;
-/// A small part of an untextured sky may match at any disparity.
+/// Support of a region (MatchedRegion) from which on it counts: regions by chance have less.
+constexpr double kMinSupport = 3;
+/// Share of the pixels that the support of all regions must reach; unrelated images agree on a few
+/// windows by chance.
+constexpr double kMinSupportShare = 0.001;
+/// Regions separated from all others by more than this many reduced pixels, plus this fraction of
+/// their disparity, are groups of their own, and count from this share of the whole support on:
+/// chance and repeated texture make small ones.
+constexpr double kGapPx = 2;
+constexpr double kGapRatio = 0.1;
+constexpr double kApartShare = 0.003;
+/// The same behind everything else, but not behind infinity: background that little is seen of.
+constexpr double kBehindShare = 0.001;
+/// Share of the negative support below which infinity is the end: a small part of an untextured sky
+/// may match at any disparity.
 constexpr double kNegativeShare = 0.02;
-/// Share of both images; unrelated images agree by chance.
-constexpr double kMinMatchedShare = 0.05;
-
-/// Winners spread over a larger part of the search range are random, as with repeated texture.
+/// Matches spread over a larger part of the search range are random.
 constexpr double kMaxSpread = 0.75;
 
-/// The range is widened by this plus this fraction of it: winners are accurate to reduced pixels.
+/// The range is widened by this plus this fraction of it: matches are accurate to reduced pixels.
 constexpr double kMarginReducedPx = 0.5;
 constexpr double kMarginPx = 1;
 constexpr double kMarginRatio = 0.03;
+/// And by so much where nothing matches; by nothing more where the support reaches kFullSupport of
+/// the pixels.
+constexpr double kUnseenReducedPx = 0.5;
+constexpr double kUnseenRatio = 0.1;
+constexpr double kFullSupport = 0.4;
 
 int reduction_of(int width) {
   const auto parts = [width](int part) { return (width + part - 1) / part; };
   return std::max({1, std::min(kUsualFactor, parts(kMinWidthPx)), parts(kMaxWidthPx)});
 }
 
-/// Intensities averaged over blocks of `factor` × `factor` pixels; the remainder at the right and
+/// Grey levels averaged over blocks of `factor` × `factor` pixels; the remainder at the right and
 /// lower sides is dropped.
-Photograph reduced(const Photograph& photograph, int factor, Execution& execution) {
+HalfPixelImage reduced(const Photograph& photograph, int factor, Execution& execution) {
   const int width = photograph.width() / factor;
   const int height = std::max(1, photograph.height() / factor);
   const int rows = std::min(factor, photograph.height());
-  const float scale =
-      1 / (kGreyLevelsPerUnit<float> * static_cast<float>(factor) * static_cast<float>(rows));
-  Image<float> result(width, height);
+  const float scale = 1 / (static_cast<float>(factor) * static_cast<float>(rows));
+  HalfPixelImage result{{width, height}, {width, height}};
   execution.for_each_band(height, [&](int first_row, int end_row) {
     std::vector<float> grey(static_cast<std::size_t>(photograph.width()));
+    std::vector<float> columns(grey.size() + 1);
+    const auto mean = [&](int start) {
+      return std::accumulate(columns.begin() + start, columns.begin() + start + factor, 0.0F) *
+             scale;
+    };
     for (int y = first_row; y < end_row; ++y) {
-      float* sums = result.row(y);
-      std::fill_n(sums, width, 0.0F);
+      std::fill(columns.begin(), columns.end(), 0.0F);
       for (int row = 0; row < rows; ++row) {
         intensity_row(photograph, y * factor + row, grey.data());
-        const float* block = grey.data();
-        for (int x = 0; x < width; ++x, block += factor) {
-          for (int column = 0; column < factor; ++column) {
-            sums[x] += block[column];
-          }
-        }
+        std::transform(grey.begin(), grey.end(), columns.begin(), columns.begin(), std::plus<>());
       }
-      std::transform(sums, sums + width, sums, [&](float sum) { return sum * scale; });
+      columns.back() = columns[grey.size() - 1];
+      for (int x = 0; x < width; ++x) {
+        const int start = x * factor;
+        result.at_pixels.row(y)[x] = mean(start);
+        const int last = photograph.width() + 1 - factor;
+        const int next = std::min(last, start + factor / 2);
+        result.between.row(y)[x] =
+            (mean(next) + mean(std::min(last, start + (factor + 1) / 2))) / 2;
+      }
     }
   });
-  return {std::move(result)};
+  return result;
 }
 
 /// Search range for reduced images of this width.
@@ -97,69 +104,47 @@ DisparityRange reduced(DisparityRange range, int factor) {
           static_cast<int>(std::lround(static_cast<double>(range.max) / factor))};
 }
 
-/// Disparities that both images agree on, in pixels of `left` and `right`, sorted.
-std::vector<float> agreed_disparities(const Photograph& left, const Photograph& right,
-                                      DisparityRange vertical, Execution& execution) {
-  MatchOptions options;
-  options.preset = MatchPreset::kBalanced;
-  options.disparities = search_in(left.width());
-  if (vertical != DisparityRange{0, 0}) {
-    options.disparities_y = vertical;
-  }
-  if (options.disparities.count() == 1) {
-    return {};  // a single candidate always wins
-  }
-  options.parameters.levels = 4;  // more suit larger images
-  options.refinement.cross_check_level = 0;
-  options.refinement.confidence_threshold = kMinConfidence;
-  options.refinement.speckle_size_px = kMinRegionPixels;
-  options.refinement.surface_fit_px = 0;
-  options.refinement.fill = Fill::kNone;
-  DisparityMaps maps;
-  StereoMatcher(options, execution).match(left, right, {}, maps);
-  std::vector<float> values;
-  for (const DisparityMap* map : {&maps.left.disparity_px, &maps.right.disparity_px}) {
-    for (int y = 0; y < map->height(); ++y) {
-      std::copy_if(map->row(y), map->row(y) + map->width(), std::back_inserter(values),
-                   [](float d) { return std::isfinite(d); });
-    }
-  }
-  std::sort(values.begin(), values.end());
-  return values;
-}
-
-struct Span {
-  float min = 0;
-  float max = 0;
+/// Disparities of some regions, in half pixels of the reduced images.
+struct Group {
+  int min = 0;
+  int max = 0;
+  double support = 0;
 };
-
-/// Span of the sorted values (at least one) without stray ones and small separate groups.
-Span span_of(const std::vector<float>& values) {
-  const auto count = static_cast<double>(values.size());
-  const auto stray = static_cast<std::size_t>(kStrayShare * count);
-  std::optional<Span> span;
-  for (std::size_t begin = stray; begin + stray < values.size();) {
-    std::size_t end = begin + 1;
-    while (end + stray < values.size() &&
-           values[end] - values[end - 1] <= kGapPx + kGapRatio * std::abs(values[end])) {
-      ++end;
-    }
-    const bool is_behind = !span && values[begin] >= -kExactnessPx;
-    if (static_cast<double>(end - begin) >= (is_behind ? kBehindShare : kApartShare) * count) {
-      span = Span{span ? span->min : values[begin], values[end - 1]};
-    }
-    begin = end;
-  }
-  return span.value_or(Span{values.front(), values.back()});
-}
 
 /// Result of a search of the reduced images.
 struct Agreement {
   int factor = 1;
-  DisparityRange search;      ///< in reduced pixels
-  std::vector<float> values;  ///< disparities that both images agree on, in reduced pixels, sorted
-  bool says_something = false;
+  DisparityRange search;               ///< in reduced pixels
+  std::vector<MatchedRegion> regions;  ///< that count, by their least disparity; may be empty
+  double support = 0;                  ///< of all
+  double support_share = 0;            ///< the same divided by the number of pixels
 };
+
+/// The span of all groups that are more than chance; `agreement` has regions.
+Group span_of(const Agreement& agreement) {
+  std::vector<Group> groups;
+  for (const MatchedRegion& region : agreement.regions) {
+    const int min = region.half_pixels.front();
+    const int max = region.half_pixels.back();
+    if (groups.empty() || min - groups.back().max > 2 * kGapPx + kGapRatio * std::abs(min)) {
+      groups.push_back({min, max, region.support});
+    } else {
+      groups.back().max = std::max(groups.back().max, max);
+      groups.back().support += region.support;
+    }
+  }
+  Group span = *std::max_element(
+      groups.begin(), groups.end(),
+      [](const Group& one, const Group& other) { return one.support < other.support; });
+  for (const Group& group : groups) {
+    const bool is_behind = group.min >= 0 && group.max < span.min;
+    if (group.support >= (is_behind ? kBehindShare : kApartShare) * agreement.support) {
+      span.min = std::min(span.min, group.min);
+      span.max = std::max(span.max, group.max);
+    }
+  }
+  return span;
+}
 
 Agreement agreement_of(const Photograph& left, const Photograph& right, DisparityRange vertical,
                        Execution& execution) {
@@ -176,13 +161,40 @@ Agreement agreement_of(const Photograph& left, const Photograph& right, Disparit
     ++factor;
   }
   agreement.search = search_in(left.width() / factor);
-  agreement.values =
-      agreed_disparities(reduced(left, factor, execution), reduced(right, factor, execution),
-                         reduced(vertical, factor), execution);
-  const double pixels = 2.0 * (left.width() / factor) * std::max(1, left.height() / factor);
-  agreement.says_something =
-      static_cast<double>(agreement.values.size()) >= std::max(1.0, kMinMatchedShare * pixels);
+  if (agreement.search.count() == 1) {
+    return agreement;  // a single candidate always wins
+  }
+  const HalfPixelImage left_grey = reduced(left, factor, execution);
+  std::vector<MatchedRegion>& regions = agreement.regions;
+  regions = find_window_matches(left_grey, reduced(right, factor, execution), agreement.search,
+                                reduced(vertical, factor), execution);
+  std::erase_if(regions, [](const MatchedRegion& region) { return region.support < kMinSupport; });
+  std::sort(regions.begin(), regions.end(),
+            [](const MatchedRegion& one, const MatchedRegion& other) {
+              return one.half_pixels < other.half_pixels;
+            });
+  for (const MatchedRegion& region : regions) {
+    agreement.support += region.support;
+  }
+  agreement.support_share = agreement.support / (static_cast<double>(left_grey.at_pixels.width()) *
+                                                 left_grey.at_pixels.height());
+  if (agreement.support_share < kMinSupportShare) {
+    regions.clear();
+  }
   return agreement;
+}
+
+/// Share of the disparities of all regions for which `is_counted` holds.
+template <typename Predicate>
+double share_of(const std::vector<MatchedRegion>& regions, const Predicate& is_counted) {
+  double counted = 0;
+  double all = std::numeric_limits<double>::min();
+  for (const MatchedRegion& region : regions) {
+    all += static_cast<double>(region.half_pixels.size());
+    counted += static_cast<double>(
+        std::count_if(region.half_pixels.begin(), region.half_pixels.end(), is_counted));
+  }
+  return counted / all;
 }
 
 }  // namespace
@@ -192,17 +204,18 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
                                                    Infinity infinity) {
   const Agreement agreement = agreement_of(left, right, vertical, execution);
   const int factor = agreement.factor;
-  const std::vector<float>& values = agreement.values;
-  if (!agreement.says_something) {
+  if (agreement.regions.empty()) {
     return std::nullopt;
   }
-  const Span span = span_of(values);
-  if (span.max - span.min > kMaxSpread * agreement.search.count()) {
+  const Group span = span_of(agreement);
+  if (span.max - span.min > 2 * kMaxSpread * agreement.search.count()) {
     return std::nullopt;
   }
-  const double min_px = factor * static_cast<double>(span.min);
-  const double max_px = factor * static_cast<double>(span.max);
-  const double margin_px = kMarginPx + kMarginReducedPx * factor + kMarginRatio * (max_px - min_px);
+  const double min_px = 0.5 * factor * span.min;
+  const double max_px = 0.5 * factor * span.max;
+  const double unseen = 1 - std::min(1.0, agreement.support_share / kFullSupport);
+  const double margin_px = kMarginPx + (kMarginReducedPx + unseen * kUnseenReducedPx) * factor +
+                           (kMarginRatio + unseen * kUnseenRatio) * (max_px - min_px);
   const int farthest = left.width() - 1;
   DisparityRange range{
       std::clamp(static_cast<int>(std::floor(min_px - margin_px)), -farthest, farthest),
@@ -210,10 +223,7 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
   if (infinity == Infinity::kAnywhere) {
     return range;
   }
-  // Negative values count only if there are many.
-  const auto negative = std::lower_bound(values.begin(), values.end(), -kExactnessPx);
-  if (static_cast<double>(negative - values.begin()) <
-      kNegativeShare * static_cast<double>(values.size())) {
+  if (share_of(agreement.regions, [](int d) { return d < -1; }) < kNegativeShare) {
     range.min = std::max(range.min, 0);
   }
   return range;
@@ -237,21 +247,14 @@ DisparitiesBeyond disparities_beyond(const Photograph& left, const Photograph& r
                                      DisparityRange range, Execution& execution,
                                      DisparityRange vertical) {
   const Agreement agreement = agreement_of(left, right, vertical, execution);
-  if (!agreement.says_something) {
-    return {};
-  }
-  const auto factor = static_cast<float>(agreement.factor);
-  const auto tolerance = static_cast<float>(kMarginReducedPx) * factor;
-  const float low = (static_cast<float>(range.min) - tolerance) / factor;
-  const float high = (static_cast<float>(range.max) + tolerance) / factor;
-  const std::vector<float>& values = agreement.values;
-  const auto count = static_cast<double>(values.size());
-  const auto below = std::lower_bound(values.begin(), values.end(), low) - values.begin();
-  const auto above = values.end() - std::upper_bound(values.begin(), values.end(), high);
-  return {.below = static_cast<double>(below) / count,
-          .above = static_cast<double>(above) / count,
-          .reaches_below = static_cast<float>(agreement.search.min) < low,
-          .reaches_above = static_cast<float>(agreement.search.max) > high};
+  const double factor = agreement.factor;
+  const double tolerance = kMarginPx + kMarginReducedPx * factor;
+  const double low = (range.min - tolerance) / factor;
+  const double high = (range.max + tolerance) / factor;
+  const auto share = [&](const auto& is_beyond) { return share_of(agreement.regions, is_beyond); };
+  return {.below = share([&](int d) { return 0.5 * d < low; }),
+          .above = share([&](int d) { return 0.5 * d > high; }),
+          .reaches_below = agreement.search.min<low, .reaches_above = agreement.search.max> high};
 }
 
 }  // namespace vantage

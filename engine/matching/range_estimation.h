@@ -14,14 +14,16 @@ enum class Infinity {
   kAnywhere  ///< films are shifted, so that things are in front of and behind the screen
 };
 
-/// Disparity range to search in a rectified pair: the disparities found in both reduced images by a
-/// search from −width/8 to width/3, without small areas far from all others, plus a margin. It
-/// starts at 0 or above unless at least 2 % of the matches are negative or `infinity` is anywhere.
-/// Empty if the images agree on almost nothing: constant or unrelated images.
+/// Disparity range to search in a rectified pair: that of the windows of both reduced images that
+/// are evidence (find_window_matches()), from −width/8 to width/3, without groups that may be
+/// chance, plus a margin, which is wider where little of the images is matched. Sky, walls, noise
+/// and repeated texture do not count. It starts at 0 or above unless at least 2 % of the matches are
+/// negative or `infinity` is anywhere. Empty if there is hardly any evidence: constant images,
+/// noise, unrelated images.
 ///
 /// Images of 512 to 1280 pixels width are reduced to a quarter, larger ones to a width of 320, so
-/// that the time is a few per cent of the matching time; surfaces of fewer than about 10 reduced
-/// pixels can be missed.
+/// that the time is a few per cent of the matching time; surfaces of less than a window, 5 × 5
+/// reduced pixels, can be missed.
 ///
 /// `vertical`: range of y_left − y_right of an unrectified pair.
 ///
@@ -39,7 +41,7 @@ DisparityRange require_disparity_range(const std::optional<DisparityRange>& foun
 DisparityRange estimate_disparity_range(const Photograph& left, const Photograph& right,
                                         Execution& execution);
 
-/// Shares outside a range, of the disparities both images agree on in find_disparity_range().
+/// Shares outside a range, of the matches that find_disparity_range() counts.
 struct DisparitiesBeyond {
   double below = 0;  ///< share below the range by more than the accuracy of that search
   double above = 0;
@@ -47,7 +49,7 @@ struct DisparitiesBeyond {
   bool reaches_above = true;
 };
 
-/// Shares are 0 if the images agree on almost nothing. Errors, `vertical` and thread rule as
+/// Shares are 0 if there is hardly any evidence. Errors, `vertical` and thread rule as
 /// find_disparity_range().
 DisparitiesBeyond disparities_beyond(const Photograph& left, const Photograph& right,
                                      DisparityRange range, Execution& execution,

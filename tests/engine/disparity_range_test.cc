@@ -2,6 +2,7 @@
 
 #include "engine/generation/book_pairs.h"
 #include "engine/generation/layered_scene.h"
+#include "engine/generation/portable_random.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/matching/stereo_matcher.h"
@@ -141,6 +142,39 @@ TEST(DisparityRange, IgnoresWhatTheOtherImageDoesNotConfirm) {
   EXPECT_LE(range.min, 4);
   EXPECT_GE(range.max, 5);
   EXPECT_LT(range.max, 100);
+}
+
+/// The range of a pair of disparities 8..22 with independent noise, where `level(x, y)` replaces
+/// grey levels: of a surface at disparity 15, x in the left image.
+template <typename Level>
+DisparityRange range_of_changed(double noise_sigma, const Level& level) {
+  BookPairOptions options = book_pair_options("real-square");
+  options.width_px = 400;
+  options.height_px = 200;
+  options.background_disparity_px = 8;
+  options.front_disparity_px = 22;
+  BookPair pair = make_book_pair(options);
+  PortableRandom random(1);
+  for (Photograph* const photograph : {&pair.left, &pair.right}) {
+    auto& pixels = std::get<Image<std::uint8_t>>(photograph->pixels);
+    const int shift = photograph == &pair.left ? 0 : 15;
+    for (const auto [x, y] : positions_of(options.width_px, options.height_px)) {
+      const double grey = level(x + shift, y).value_or(pixels.at(x, y));
+      pixels.at(x, y) = static_cast<std::uint8_t>(
+          std::clamp(std::lround(grey + noise_sigma * random.normal()), 0L, 255L));
+    }
+  }
+  return estimate_disparity_range(pair.left, pair.right, execution());
+}
+
+TEST(DisparityRange, SkyOfNoiseDoesNotCount) {
+  for (const int sigma : {1, 3}) {
+    const DisparityRange range = range_of_changed(
+        sigma, [](int, int y) { return y < 60 ? std::optional<int>(215 - y / 4) : std::nullopt; });
+    EXPECT_LE(range.min, 8) << range.min << ':' << range.max;
+    EXPECT_GE(range.max, 22);
+    EXPECT_LE(range.count(), 1.6 * 14 + 16) << range.min << ':' << range.max;
+  }
 }
 
 TEST(DisparityRange, RepeatedTextureIsNoEvidence) {
