@@ -1,30 +1,27 @@
 #include "engine/matching/noise/noise_filter.h"
 
-#include <utility>
+#include <algorithm>
+#include <cmath>
 
 #include "engine/image/intensity_rows.h"
 #include "engine/image/memory_use.h"
-#include "kernels/intensity_diffusion/intensity_diffusion.h"
+#include "kernels/bilateral/bilateral.h"
 
 namespace vantage {
 namespace {
 
-void smooth(const Image<float>& from, double contrast, Execution& execution, Image<float>& to) {
-  const int width = from.width();
-  const int height = from.height();
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    const auto work = execution.scratch().lease(
-        sizeof(float) * static_cast<std::size_t>(kernels::intensity_diffusion_work_floats(width)));
-    for (int y = first_row; y < end_row; ++y) {
-      kernels::intensity_diffusion_row({.up = y > 0 ? from.row(y - 1) : nullptr,
-                                        .centre = from.row(y),
-                                        .down = y + 1 < height ? from.row(y + 1) : nullptr,
-                                        .width = width,
-                                        .contrast = static_cast<float>(contrast),
-                                        .work = reinterpret_cast<float*>(work.data()),
-                                        .output = to.row(y)});
+constexpr int kRadius = kernels::kBilateralRadius;
+
+kernels::BilateralRow row_of(int width, const NoiseFilter& filter) {
+  kernels::BilateralRow row{.width = width,
+                            .cut_off = static_cast<float>(filter.cut_off_grey_levels)};
+  for (int v = -kRadius; v <= kRadius; ++v) {
+    for (int u = -kRadius; u <= kRadius; ++u) {
+      row.weights[static_cast<std::size_t>(v + kRadius)][static_cast<std::size_t>(u + kRadius)] =
+          static_cast<float>(std::exp(-(u * u + v * v) / (2 * filter.sigma_px * filter.sigma_px)));
     }
-  });
+  }
+  return row;
 }
 
 }  // namespace
@@ -36,26 +33,35 @@ const Photograph& SmoothedPhotograph::make(const Photograph& photograph, int cha
   Image<float>& result = pixels_of<float>(result_);
   result.resize(width, height, channels);
   result_.left_out = Mask::borrowed(photograph.left_out.view());
-  for (Image<float>& image : steps_) {
-    image.resize(width, height);
-  }
+  const kernels::BilateralRow smoothing = row_of(width, filter);
+  const int columns = smoothing.width_in_whole_columns();
+  padded_.resize(columns + 2 * kRadius, height);
   for (int c = 0; c < channels; ++c) {
     execution.for_each_row(height, [&](int y) {
+      float* const grey = padded_.row(y) + kRadius;
       if (channels == 1) {
-        intensity_row(photograph, y, steps_[0].row(y));
+        intensity_row(photograph, y, grey);
       } else {
-        channel_intensity_row(photograph, c, y, steps_[0].row(y));
+        channel_intensity_row(photograph, c, y, grey);
       }
+      std::fill_n(grey - kRadius, kRadius, grey[0]);
+      std::fill(grey + width, grey + columns + kRadius, grey[width - 1]);
     });
-    for (int n = 0; n < filter.steps; ++n) {
-      smooth(steps_[0], filter.contrast_grey_levels, execution, steps_[1]);
-      std::swap(steps_[0], steps_[1]);
-    }
-    execution.for_each_row(height, [&](int y) {
-      const float* grey = steps_[0].row(y);
-      float* pixels = result.row(y) + c;
-      for (int x = 0; x < width; ++x) {
-        pixels[x * channels] = grey[x] * (1 / kGreyLevelsPerUnit<float>);
+    execution.for_each_band(height, [&](int first_row, int end_row) {
+      const auto work =
+          execution.scratch().lease(sizeof(float) * static_cast<std::size_t>(columns));
+      kernels::BilateralRow row = smoothing;
+      row.output = reinterpret_cast<float*>(work.data());
+      for (int y = first_row; y < end_row; ++y) {
+        for (int v = -kRadius; v <= kRadius; ++v) {
+          row.rows[static_cast<std::size_t>(v + kRadius)] =
+              padded_.row(std::clamp(y + v, 0, height - 1)) + kRadius;
+        }
+        kernels::bilateral_row(row);
+        float* const pixels = result.row(y) + c;
+        for (int x = 0; x < width; ++x) {
+          pixels[x * channels] = row.output[x] * (1 / kGreyLevelsPerUnit<float>);
+        }
       }
     });
   }
@@ -63,8 +69,7 @@ const Photograph& SmoothedPhotograph::make(const Photograph& photograph, int cha
 }
 
 std::size_t SmoothedPhotograph::held_bytes() const {
-  return vantage::held_bytes(result_) + vantage::held_bytes(steps_[0]) +
-         vantage::held_bytes(steps_[1]);
+  return vantage::held_bytes(result_) + vantage::held_bytes(padded_);
 }
 
 }  // namespace vantage

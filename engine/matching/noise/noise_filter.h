@@ -8,11 +8,12 @@
 
 namespace vantage {
 
-/// Steps of anisotropic diffusion (kernels/intensity_diffusion), which smooth differences that are
-/// small beside `contrast_grey_levels` and keep edges. n steps reach √(0.4 n) px.
+/// Bilateral smoothing of 7×7 pixels (kernels/bilateral), which keeps edges.
 struct NoiseFilter {
-  int steps = 0;
-  double contrast_grey_levels = 1;
+  double sigma_px = 0;             ///< of the weights by distance; 0: none
+  double cut_off_grey_levels = 1;  ///< pixels that differ by more do not count
+
+  [[nodiscard]] bool smooths() const { return sigma_px > 0; }
 };
 
 /// A photograph as costs see it: smoothed intensities, floats 0..1. Working memory, reused without
@@ -26,12 +27,12 @@ class SmoothedPhotograph {
 
  private:
   Photograph result_;
-  std::array<Image<float>, 2> steps_;
+  Image<float> padded_;  ///< of one channel, with its border repeated
 };
 
 /// Bytes of all images of a call, and of their making.
 constexpr std::size_t smoothed_bytes(std::size_t pixels, std::size_t channels, std::size_t images) {
-  return sizeof(float) * pixels * images * (channels + 2);
+  return sizeof(float) * pixels * images * (channels + 1);
 }
 
 }  // namespace vantage

@@ -9,8 +9,9 @@ namespace vantage {
 namespace {
 
 /// Chosen on cones, art, baby1 and venus, seen on six others (perf/log, noise).
-constexpr double kContrastPerNoise = 2.75;
-constexpr NoiseFilter kFilterOfCoded = {.steps = 2, .contrast_grey_levels = 10};
+constexpr double kCutOffPerNoise = 3.5;
+constexpr double kSigmaPx = 2;
+constexpr NoiseFilter kFilterOfCoded = {.sigma_px = 1.5, .cut_off_grey_levels = 20};
 
 NoiseFilter filter_of(const FoundNoise& found) {
   switch (found.kind) {
@@ -19,7 +20,7 @@ NoiseFilter filter_of(const FoundNoise& found) {
     case NoiseKind::kCodec:
       return kFilterOfCoded;
     case NoiseKind::kSensor:
-      return {.steps = 3, .contrast_grey_levels = kContrastPerNoise * found.grey_levels};
+      return {.sigma_px = kSigmaPx, .cut_off_grey_levels = kCutOffPerNoise * found.grey_levels};
   }
   return {};
 }
@@ -27,14 +28,12 @@ NoiseFilter filter_of(const FoundNoise& found) {
 }  // namespace
 
 std::string NoiseTreatment::text() const {
-  constexpr double kVarianceOfStep = 0.4;  // px², of a step without edges
-  const double smoothed_px = std::sqrt(kVarianceOfStep * filter.steps);
   return found.kind == NoiseKind::kCodec
              ? fmt::format(
                    "noise: blocks of a lossy codec; images are compared smoothed by {:.1f} px",
-                   smoothed_px)
+                   filter.sigma_px)
              : fmt::format("noise: {:.1f} grey levels; images are compared smoothed by {:.1f} px",
-                           found.grey_levels, smoothed_px);
+                           found.grey_levels, filter.sigma_px);
 }
 
 NoiseTreatment noise_treatment(std::span<const Photograph* const> photographs,

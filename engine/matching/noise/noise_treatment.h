@@ -15,8 +15,8 @@ struct NoiseTreatment {
   FoundNoise found;
   NoiseFilter filter;
 
-  [[nodiscard]] bool acts() const { return filter.steps > 0; }
-  /// "noise: 5.1 grey levels; costs compare images smoothed by 1.1 px"
+  [[nodiscard]] bool acts() const { return filter.smooths(); }
+  /// "noise: 5.1 grey levels; costs compare images smoothed by 2.0 px"
   [[nodiscard]] std::string text() const;
 };
 
