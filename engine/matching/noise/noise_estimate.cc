@@ -204,6 +204,24 @@ NoiseEstimate estimate_noise(const Photograph& photograph, Execution& execution)
   return result;
 }
 
+namespace {
+
+/// Whether codecs rounded all images coarsely, as their files state; empty: not stated.
+std::optional<bool> stated_coding(std::span<const Photograph* const> photographs) {
+  constexpr double kMinStep = 2;  // a JPEG of quality 92
+  bool are_coarse = true;
+  for (const Photograph* photograph : photographs) {
+    const auto& coding = photograph->origin.coding;
+    if (!coding || coding->step_grey_levels == 0) {
+      return {};
+    }
+    are_coarse = are_coarse && coding->step_grey_levels >= kMinStep;
+  }
+  return are_coarse;
+}
+
+}  // namespace
+
 FoundNoise find_noise(std::span<const Photograph* const> photographs,
                       const std::optional<DisparityRange>& disparities, Execution& execution) {
   constexpr double kMinBlockScore = 4.5;
@@ -223,7 +241,7 @@ FoundNoise find_noise(std::span<const Photograph* const> photographs,
                             ? of_image.block_score
                             : std::min(found.block_score, of_image.block_score);
   }
-  if (are_coded) {
+  if (stated_coding(photographs).value_or(are_coded)) {
     found.kind = NoiseKind::kCodec;
   } else if (are_noisy &&
              !(disparities && is_shared_texture(*photographs[0], *photographs[1],

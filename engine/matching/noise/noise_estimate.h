@@ -33,6 +33,7 @@ struct FoundNoise {
   double grey_levels = 0;  ///< kSensor: standard deviation, the mean of the images
   double block_score = 0;  ///< kCodec: the smallest of the images
 };
+/// Files that state how coarsely a codec rounded are believed, others are examined.
 /// disparities: of the second image, where rows correspond: what is found again there is texture,
 /// not noise. Empty: not known.
 FoundNoise find_noise(std::span<const Photograph* const> photographs,

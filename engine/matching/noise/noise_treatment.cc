@@ -11,7 +11,7 @@ namespace {
 /// Chosen on cones, art, baby1 and venus, seen on six others (perf/log, noise).
 constexpr double kCutOffPerNoise = 3.5;
 constexpr double kSigmaPx = 2;
-constexpr NoiseFilter kFilterOfCoded = {.sigma_px = 1.5, .cut_off_grey_levels = 20};
+constexpr NoiseFilter kFilterOfCoded = {.sigma_px = 1, .cut_off_grey_levels = 20};
 
 NoiseFilter filter_of(const FoundNoise& found) {
   switch (found.kind) {
