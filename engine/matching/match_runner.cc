@@ -54,8 +54,11 @@ void set_needs(const SearchAbilities& abilities, SearchJob& job) {
 }  // namespace
 
 MatchRunner::MatchRunner(const ResolvedMatchOptions& options, Execution& execution)
-    : options_(options), of_coded_(options), execution_(execution) {
-  of_coded_.parameters = options.parameters_of_coded.value_or(options.parameters);
+    : options_(options), execution_(execution) {
+  for (std::size_t kind = 0; kind < kNoiseKinds; ++kind) {
+    options_of_[kind] = options;
+    options_of_[kind].parameters = options.parameters_of[kind].value_or(options.parameters);
+  }
 }
 
 NoiseTreatment MatchRunner::treatment_of(const MatchCall& call) {
@@ -130,8 +133,7 @@ void MatchRunner::run(const MatchCall& given, const MatchRequest& request, Dispa
     }
   }
   times.noise = treatment.found;
-  const bool is_coded = treatment.found.kind == NoiseKind::kCodec;
-  const ResolvedMatchOptions& options = is_coded ? of_coded_ : options_;
+  const auto& options = options_of_[static_cast<std::size_t>(treatment.found.kind)];
   SearchJob job = job_of(options, call, request, maps, times, clock);
   const MatchSize size = size_of(call, request.previous != nullptr);
   const SearchEntry& entry = search_of(options, size);

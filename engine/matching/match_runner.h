@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <span>
 #include <vector>
@@ -51,7 +52,7 @@ class MatchRunner {
   [[nodiscard]] bool choose_tiles(MapSearch& search, SearchJob& job) const;
 
   const ResolvedMatchOptions& options_;
-  ResolvedMatchOptions of_coded_;  ///< options_ for images that a lossy codec rounded
+  std::array<ResolvedMatchOptions, kNoiseKinds> options_of_;  ///< by NoiseKind
   Execution& execution_;
   ObjectPool<std::vector<SmoothedPhotograph>> smoothed_;
   SearchPools pools_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 namespace vantage {
 
 /// What is wrong with the grey levels of the images of a call.
@@ -8,5 +10,6 @@ enum class NoiseKind {
   kSensor,  ///< noise that is independent in every pixel
   kCodec,   ///< values rounded by a lossy codec, in blocks
 };
+inline constexpr std::size_t kNoiseKinds = 3;
 
 }  // namespace vantage

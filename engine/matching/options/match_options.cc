@@ -233,7 +233,7 @@ ResolvedMatchOptions MatchOptions::in_force() const {
           .parameters = resolved(),
           .refinement = raw ? std::nullopt : std::optional(resolved_refinement()),
           .noise = noise_in_force(),
-          .parameters_of_coded = resolved(NoiseKind::kCodec),
+          .parameters_of = {resolved(), resolved(NoiseKind::kSensor), resolved(NoiseKind::kCodec)},
           .roi = roi,
           .scale = scale};
 }

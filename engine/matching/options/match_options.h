@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -28,8 +29,8 @@ struct ResolvedMatchOptions {
   MethodParameters parameters;
   std::optional<RefinementOptions> refinement;  ///< empty: maps keep the winners
   std::optional<double> noise = 0;              ///< MatchOptions::noise_in_force()
-  /// Instead of `parameters` for images that a lossy codec rounded.
-  std::optional<MethodParameters> parameters_of_coded = {};
+  /// Instead of `parameters`, where set, for images with noise: by NoiseKind.
+  std::array<std::optional<MethodParameters>, kNoiseKinds> parameters_of = {};
   std::optional<ImageRegion> roi = std::nullopt;
   double scale = 1;
 

@@ -22,6 +22,26 @@ MethodOverrides coarse_to_fine() {
   return parameters;
 }
 
+/// What a codec rounded is alike in pixels beside each other: their costs agree by chance, and
+/// small parts differ from what is around them. Chosen in perf/log/2026-11-27-noise.md.
+void set_for_noise(MatchPreset preset, NoiseKind kind, MethodOverrides& parameters) {
+  const bool is_coded = kind == NoiseKind::kCodec;
+  if (is_coded) {
+    parameters.level_weight = 0.4;
+    parameters.sigma_measurement = 2.5;
+    parameters.epsilon_prior = 1e-4;
+    parameters.slant_penalty = 1;
+  }
+  if (preset == MatchPreset::kRealtime) {
+    parameters.mu = 0.33;
+    parameters.iterations = 4;
+    parameters.final_iterations = 5;
+  } else if (preset == MatchPreset::kQuality && is_coded) {
+    parameters.iterations = 5;
+    parameters.final_iterations = 3;
+  }
+}
+
 }  // namespace
 
 PresetSettings preset_settings(MatchPreset preset, NoiseKind kind) {
@@ -67,12 +87,8 @@ PresetSettings preset_settings(MatchPreset preset, NoiseKind kind) {
       settings.refinement.fill = Fill::kMedian;
       break;
   }
-  if (kind == NoiseKind::kCodec) {
-    // What a codec rounded is alike in pixels beside each other, so their costs agree by chance.
-    settings.parameters.level_weight = 0.4;
-    settings.parameters.sigma_measurement = 2.5;
-    settings.parameters.epsilon_prior = 1e-4;
-    settings.parameters.slant_penalty = 1;
+  if (kind != NoiseKind::kNone) {
+    set_for_noise(preset, kind, settings.parameters);
   }
   return settings;
 }
