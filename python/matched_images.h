@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "engine/vantage.h"
@@ -32,9 +31,7 @@ class MatchedImages {
   [[nodiscard]] std::vector<Photograph> read_again(const char* asked_for) const;
 
   /// What read() found out.
-  [[nodiscard]] std::span<const Remark> remarks() const {
-    return {white_level_.remark ? &*white_level_.remark : nullptr, white_level_.remark ? 1U : 0U};
-  }
+  [[nodiscard]] const std::vector<Remark>& remarks() const { return white_level_.remarks; }
 
   /// The map's image: of the pair the left one, unless the second camera is on the left.
   [[nodiscard]] Side side(Side reference) const {

@@ -142,9 +142,7 @@ class MapArrays {
     WhiteLevelSearch search;
     search.add(image_.photograph());
     white_level_ = search.found();
-    if (white_level_.remark) {
-      RemarkWarnings().warn({&*white_level_.remark, 1});
-    }
+    RemarkWarnings().warn(white_level_.remarks);
     if (!unmatched.is_none()) {
       unmatched_ = mask_from(unmatched, "unmatched");
     }

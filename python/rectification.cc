@@ -83,16 +83,14 @@ py::tuple to_rectify(const py::object& left, const py::object& right,
   const ChannelOrder order = bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb;
   const PixelArray left_pixels(left, order, "left");
   const PixelArray right_pixels(right, order, "right");
-  std::optional<Remark> scaled;
+  std::vector<Remark> scaled;
   RectifiedImages result = on_threads_of(execution, [&] {
     Photograph pair[] = {left_pixels.copy(), right_pixels.copy()};
     Photograph* const both[] = {&pair[0], &pair[1]};
     scaled = scale_to_white_level(both, white_level);
     return rectify(std::move(pair[0]), std::move(pair[1]), calibration, options, execution);
   });
-  if (scaled) {
-    RemarkWarnings().warn({&*scaled, 1});
-  }
+  RemarkWarnings().warn(scaled);
   return py::make_tuple(
       array_of(std::move(result.left), order), array_of(std::move(result.right), order),
       result.calibration, result.cameras, result.row_error_px,

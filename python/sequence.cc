@@ -142,9 +142,7 @@ class FrameLoop {
       return py::none();
     }
     const FrameSlot& slot = *frame->slot;
-    if (const std::optional<Remark>& remark = source_->white_level().remark) {
-      warnings_.warn({&*remark, 1});
-    }
+    warnings_.warn(source_->white_level().remarks);
     warnings_.warn(slot.match.remarks);
     if (slot.cut && slot.cut->any()) {
       const Remark remark = cut_range_remark(*slot.cut, frame->searched, false);

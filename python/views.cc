@@ -92,7 +92,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
   const PixelArray right_pixels(right, order, "right");
   PairWithMaps pair;
   Photograph* const both[] = {&pair.left, &pair.right};
-  std::optional<Remark> scaled;
+  std::vector<Remark> scaled;
   if (!left_map.is_none()) {
     pair.maps.left.disparity_px = map_from(left_map, "disparity");
     pair.maps.right.disparity_px = map_from(right_map, "right_disparity");
@@ -115,9 +115,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
     }
     return render(setup, poses, pair, execution);
   });
-  if (scaled) {
-    report.remarks.push_back(*scaled);
-  }
+  RemarkWarnings().warn(scaled);
   RemarkWarnings().warn(report.remarks);
   py::list arrays;
   for (Photograph& image : images) {

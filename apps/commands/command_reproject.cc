@@ -125,7 +125,7 @@ MapFiles read_files(const ReprojectJob& job, RunReport& report) {
   if (!job.image.empty()) {
     files.image = read_photograph(job.image);
     Photograph* const image[] = {&files.image};
-    tell_remark(scale_to_white_level(image, {}), job.common, report);
+    tell_remarks(scale_to_white_level(image, {}), job.common, report);
   }
   if (!job.unmatched.empty()) {
     files.unmatched = eight_bit(read_photograph(job.unmatched));

@@ -116,7 +116,7 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     }
   });
   Photograph* const images_read[] = {&result.left, &result.right};
-  tell_remark(scale_to_white_level(images_read, pair.white_level), common, report);
+  tell_remarks(scale_to_white_level(images_read, pair.white_level), common, report);
   if (!pair.has_maps()) {
     leave_out_masked(pair.masks, result.left, result.right);
   }

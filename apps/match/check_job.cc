@@ -120,8 +120,9 @@ int run_check(CheckJob& job, const Settings& settings) {
     examined.found = report.timed_compute("examine", [&] {
       return examine_pair(pair.left, pair.right, job.sequence.match, execution);
     });
-    if (const auto& remark = session.pairs->white_level().remark; remark && index == 0) {
-      examined.found.remarks.insert(examined.found.remarks.begin(), *remark);
+    if (index == 0) {
+      const std::vector<Remark>& level = session.pairs->white_level().remarks;
+      examined.found.remarks.insert(examined.found.remarks.begin(), level.begin(), level.end());
     }
     for (const Remark& remark : examined.found.remarks) {
       report.add_remark(remark);

@@ -82,7 +82,7 @@ std::vector<Photograph> read_images(const MatchJob& job, RunReport& report) {
   for (Photograph& image : images) {
     all.push_back(&image);
   }
-  tell_remark(scale_to_white_level(all, job.white_level), job.common, report);
+  tell_remarks(scale_to_white_level(all, job.white_level), job.common, report);
   report.timed_file_access("read", [&] { leave_out_masked(job.masks, images[0], images[1]); });
   return images;
 }

@@ -152,7 +152,7 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
 
   const std::unique_ptr<PairSource> pairs = open_pair_source(job.input);
   check_pairs(*pairs, files);
-  tell_remark(pairs->white_level().remark, job.common, report);
+  tell_remarks(pairs->white_level().remarks, job.common, report);
   const int pair_count = pairs->pair_count();
   FramePair pair;
   report.timed_file_access("read", [&] { read_equal_pair(*pairs, 0, pair); });

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "apps/reports/run_report.h"
@@ -17,11 +16,5 @@ void tell_match(const MatchReport& match, const CommonOptions& common, RunReport
 SettingValue map_values(const MapShares& shares);
 /// Noise that was found, likewise; null where there is none.
 SettingValue noise_values(const FoundNoise& noise);
-
-/// The same of one, if there is one.
-inline void tell_remark(const std::optional<Remark>& remark, const CommonOptions& common,
-                        RunReport& report) {
-  tell_remarks({remark ? &*remark : nullptr, remark ? 1U : 0U}, common, report);
-}
 
 }  // namespace vantage::apps

@@ -169,7 +169,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   }
   open_source(job, session);
   session.selection.shard = job.shard;
-  tell_remark(session.pairs->white_level().remark, job.common, report);
+  tell_remarks(session.pairs->white_level().remarks, job.common, report);
   for (const fs::path& file : session.pairs->files()) {
     files.add_input(file);
   }

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <numeric>
+#include <limits>
+#include <string>
 #include <type_traits>
 
 #include "engine/error.h"
@@ -16,55 +16,35 @@ namespace {
 
 constexpr int kMinBits = 8;
 constexpr int kMaxBits = 14;
-constexpr int kMinBitsOfScaled = 13;
 constexpr unsigned kScaledFrom8Bits = 257;
 constexpr float kMaxHighlight = 8;
 constexpr double kHighlights = 0.995;
-constexpr std::size_t kPixelsSampled = 1 << 16;
+constexpr std::size_t kFloatsPerSample = 61;  // prime: it does not fall into columns
 
-/// All values but alpha.
-template <typename T, typename Take>
-void for_each_colour(const Image<T>& image, const Take& take) {
-  const int colours = std::min(image.channels(), 3);
-  for (int y = 0; y < image.height(); ++y) {
-    const T* pixel = image.row(y);
-    for (int x = 0; x < image.width(); ++x, pixel += image.channels()) {
-      for (int c = 0; c < colours; ++c) {
-        take(pixel[c]);
-      }
-    }
-  }
-}
-
-std::string bits_text(double white) {
-  const int bits = std::ilogb(white + 1);
-  return white >= 255 && white + 1 == std::ldexp(1.0, bits) ? fmt::format(" ({} bits)", bits) : "";
-}
+/// 2ⁿ − 1 with the bits n of `value`.
+double largest_of_bits(double value) { return std::ldexp(1.0, std::ilogb(value) + 1) - 1; }
 
 }  // namespace
 
 double WhiteLevel::apply(Photograph& photograph) const {
-  photograph.origin.white_level = kOfTypes[photograph.pixels.index()];
   if (!scales(photograph)) {
     return 0;
   }
-  const double white = of_type[photograph.pixels.index()];
+  photograph.origin.white_level = kOfTypes[type];
   return std::visit(
       [&]<typename T>(Image<T>& image) {
         const int values = image.width() * image.channels();
-        const double largest = kOfTypes[photograph.pixels.index()];
         std::size_t clipped = 0;
         for (int y = 0; y < image.height(); ++y) {
           T* row = image.row(y);
-          if constexpr (std::is_same_v<T, float>) {
-            for (int i = 0; i < values; ++i) {
+          for (int i = 0; i < values; ++i) {
+            if constexpr (std::is_same_v<T, float>) {
               const bool is_alpha = image.channels() == 4 && i % 4 == 3;
-              row[i] = is_alpha ? row[i] : static_cast<T>(row[i] / white);
-            }
-          } else {
-            for (int i = 0; i < values; ++i) {
-              clipped += row[i] > white ? 1 : 0;
-              row[i] = static_cast<T>(std::min(largest, row[i] * largest / white) + 0.5);
+              row[i] = is_alpha ? row[i] : static_cast<T>(row[i] / value);
+            } else {
+              clipped += row[i] > value ? 1 : 0;
+              const double scaled = row[i] * kOfTypes[type] / value;
+              row[i] = static_cast<T>(std::min(scaled, kOfTypes[type]) + 0.5);
             }
           }
         }
@@ -75,105 +55,91 @@ double WhiteLevel::apply(Photograph& photograph) const {
 
 void WhiteLevelSearch::add(const Photograph& photograph) {
   const std::size_t type = photograph.pixels.index();
-  const std::optional<double>& stated = photograph.origin.white_level;
-  types_seen_[type] = true;
-  if (stated) {
-    stated_[type] = std::max(*stated, stated_[type].value_or(0));
-  } else {
-    has_values_[type] = type != 0;
-    if (const auto* words = std::get_if<Image<std::uint16_t>>(&photograph.pixels)) {
-      look_at(*words);
-    } else if (const auto* floats = std::get_if<Image<float>>(&photograph.pixels)) {
-      look_at(*floats);
-    }
+  if (type > type_) {
+    *this = WhiteLevelSearch(given_);
+    type_ = type;
   }
-}
-
-void WhiteLevelSearch::look_at(const Image<std::uint16_t>& image) {
-  for_each_colour(image, [&](unsigned value) {
-    largest_ = std::max(largest_, value);
-    divisor_ = divisor_ == 1 ? 1 : std::gcd(divisor_, value);
-  });
-}
-
-void WhiteLevelSearch::look_at(const Image<float>& image) {
-  const auto pixels =
-      static_cast<std::size_t>(image.width()) * static_cast<std::size_t>(image.height());
-  const std::size_t step = pixels / kPixelsSampled | 1U;  // odd: it does not fall into columns
-  std::size_t next = 0;
-  for_each_colour(image, [&](float value) {
-    largest_float_ = std::max(largest_float_, value);
-    if (next++ % step == 0) {
-      sample_.push_back(value);
-    }
-  });
-}
-
-double WhiteLevelSearch::white_of_16_bits() const {
-  const int bits = std::max(kMinBits, static_cast<int>(std::bit_width(largest_)));
-  const bool is_scaled =
-      divisor_ % kScaledFrom8Bits == 0 || (bits >= kMinBitsOfScaled && divisor_ >= 4);
-  return bits > kMaxBits || is_scaled ? WhiteLevel::kOfTypes[1] : (1U << bits) - 1U;
+  if (type < type_ || type == 0 || given_) {
+    return;
+  }
+  if (const std::optional<double>& white = photograph.origin.white_level) {
+    stated_ = std::max(*white, stated_.value_or(0));
+  }
+  std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        const int channels = image.channels();
+        for (int y = 0; y < image.height(); ++y) {
+          for (int i = 0; i < image.width() * channels; ++i) {
+            const T value = image.row(y)[i];
+            if (channels == 4 && i % 4 == 3) {
+              continue;  // alpha
+            }
+            largest_ = std::max(largest_, static_cast<float>(value));
+            if constexpr (std::is_integral_v<T>) {
+              is_of_8_bits_ = is_of_8_bits_ && value % kScaledFrom8Bits == 0;
+            } else if (values_seen_++ % kFloatsPerSample == 0) {
+              sample_.push_back(value);
+            }
+          }
+        }
+      },
+      photograph.pixels);
 }
 
 double WhiteLevelSearch::white_of_floats() const {
   std::vector<float> sample = sample_;
   const float bright = percentile(sample, kHighlights);
-  const float brightest = largest_float_ > kMaxHighlight * bright ? bright : largest_float_;
-  const int exponent = std::ilogb(brightest);
+  const float brightest = largest_ > kMaxHighlight * bright ? bright : largest_;
   if (brightest >= 2) {
-    return std::ldexp(1.0, exponent + 1) - 1;
+    return largest_of_bits(brightest);
   }
-  return brightest > 0 && brightest < 1.0F / 16 ? std::ldexp(1.0, exponent + 1) : 1;
+  return brightest > 0 && brightest < 1.0F / 16 ? brightest : 1;
 }
 
 WhiteLevel WhiteLevelSearch::found() const {
-  WhiteLevel level;
+  WhiteLevel level{type_, WhiteLevel::kOfTypes[type_]};
   if (given_) {
-    for (std::size_t type = 0; type < 2; ++type) {
-      if (types_seen_[type] && *given_ > WhiteLevel::kOfTypes[type]) {
-        throw Error(
-            fmt::format("`white-level` is {}, expected at most {}, the largest value of "
-                        "{}-bit images",
-                        *given_, WhiteLevel::kOfTypes[type], type == 0 ? 8 : 16));
-      }
+    const double max = type_ < 2 ? level.value : std::numeric_limits<float>::max();
+    if (!(*given_ > 0 && *given_ <= max)) {
+      throw UsageError(
+          fmt::format("`white-level` is {}, expected above 0 and at most {:g}, the "
+                      "largest value of the images",
+                      *given_, max));
     }
-    level.of_type.fill(*given_);
+    level.value = *given_;
     return level;
   }
-  for (std::size_t type = 0; type < 3; ++type) {
-    if (stated_[type]) {
-      level.of_type[type] = *stated_[type];
-    } else if (has_values_[type]) {
-      level.of_type[type] = type == 1 ? white_of_16_bits() : white_of_floats();
-    }
-    if (const double white = level.of_type[type]; white != WhiteLevel::kOfTypes[type]) {
-      level.remark =
-          Remark{stated_[type] ? Remark::Kind::kNote : Remark::Kind::kWarning, "white level",
-                 fmt::format("white level: {}{}, {}", white, bits_text(white),
-                             stated_[type] ? "as the files say" : "from the brightest pixels")};
-    }
+  const bool is_stated = stated_ && *stated_ >= largest_;
+  if (is_stated) {
+    level.value = *stated_;
+  } else if (type_ == 1 && largest_ < (1 << kMaxBits) && !is_of_8_bits_) {
+    level.value = largest_of_bits(std::max(largest_, static_cast<float>(1 << (kMinBits - 1))));
+  } else if (type_ == 2) {
+    level.value = white_of_floats();
+  }
+  if (level.value != WhiteLevel::kOfTypes[type_]) {
+    const int bits = std::ilogb(level.value + 1);
+    const bool has_bits = bits >= kMinBits && level.value + 1 == std::ldexp(1.0, bits);
+    level.remarks.push_back(
+        {is_stated ? Remark::Kind::kNote : Remark::Kind::kWarning, "white level",
+         fmt::format("white level: {:g}{}, {}", level.value,
+                     has_bits ? fmt::format(" ({} bits)", bits) : "",
+                     is_stated ? "as the files say" : "from the brightest pixels")});
   }
   return level;
 }
 
-std::optional<Remark> scale_to_white_level(std::span<Photograph* const> photographs,
-                                           std::optional<double> given) {
+std::vector<Remark> scale_to_white_level(std::span<Photograph* const> photographs,
+                                         std::optional<double> given) {
   WhiteLevelSearch search(given);
   for (const Photograph* const photograph : photographs) {
     search.add(*photograph);
   }
-  const WhiteLevel level = search.found();
+  WhiteLevel level = search.found();
   for (Photograph* const photograph : photographs) {
     level.apply(*photograph);
   }
-  return level.remark;
-}
-
-void validate_white_level(std::optional<double> white_level) {
-  if (white_level && !(*white_level > 0 && std::isfinite(*white_level))) {
-    throw UsageError(fmt::format("white-level is {}, expected a number above 0", *white_level));
-  }
+  return std::move(level.remarks);
 }
 
 }  // namespace vantage

@@ -70,16 +70,12 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
 }
 
 void add_white_level_setting(Settings& settings, std::optional<double>& white_level) {
-  Setting& setting = settings.number(
+  settings.number(
       "white-level", white_level, "VALUE",
       "Stored value that is white, such as 4095 for 12 bits in 16; auto: what the files state, "
       "else "
       "2^n - 1 of the n bits that 16-bit images use (of floats in another scale than 0 to 1 "
       "likewise), in sequences of up to 8 pairs");
-  setting.set = [set = std::move(setting.set), &white_level](const SettingValue& value) {
-    set(value);
-    validate_white_level(white_level);
-  };
 }
 
 }  // namespace vantage

@@ -135,7 +135,7 @@ TEST(PairSource, WhiteLevelIsThatOfTheWholeInput) {
   }
   PairSourceOptions options = two_cameras(folder / "l", folder / "r");
   const auto source = open_pair_source(options);
-  EXPECT_EQ(source->white_level().of_type[1], 4095);
+  EXPECT_EQ(source->white_level().value, 4095);
   FramePair pair;
   const auto value_at = [&](PairSource& from, int index) {
     from.skip_to(index);

@@ -27,7 +27,7 @@ double found(Photograph left, Photograph right) {
   WhiteLevelSearch search;
   search.add(left);
   search.add(right);
-  return search.found().of_type[left.pixels.index()];
+  return search.found().value;
 }
 
 TEST(WhiteLevel, IsOfTheBitsOfTheBrightestPixel) {
@@ -37,7 +37,8 @@ TEST(WhiteLevel, IsOfTheBitsOfTheBrightestPixel) {
     EXPECT_EQ(found(ramp<std::uint16_t>(white), ramp<std::uint16_t>(30)), expected) << bits;
     EXPECT_EQ(found(ramp<std::uint16_t>(1), ramp<std::uint16_t>(0.6 * white, 4)), expected) << bits;
   }
-  EXPECT_EQ(found(ramp<std::uint16_t>(0), ramp<std::uint16_t>(0)), 255);
+  EXPECT_EQ(found(ramp<std::uint16_t>(0), ramp<std::uint16_t>(0)), 65535) << "black";
+  EXPECT_EQ(found(ramp<std::uint8_t>(200), ramp<std::uint16_t>(900)), 1023) << "of 16 bits";
   EXPECT_EQ(found(ramp<std::uint8_t>(9), ramp<std::uint8_t>(5)), 255);
 }
 
@@ -51,7 +52,7 @@ TEST(WhiteLevel, ValuesThatWereScaledTo16BitsStay) {
     return photograph;
   };
   EXPECT_EQ(found(times(40, 257), times(40, 257)), 65535);
-  EXPECT_EQ(found(times(900, 16), times(800, 16)), 65535);
+  EXPECT_EQ(found(times(4000, 16), times(800, 16)), 65535);
   EXPECT_EQ(found(times(255, 16), times(255, 16)), 4095) << "8 bits in 12";
 }
 
@@ -61,7 +62,7 @@ TEST(WhiteLevel, OfFloatsIsThatOfTheirScale) {
                                        {1.9, 1.0},
                                        {255.0, 255.0},
                                        {255e3, 262143.0},
-                                       {0.01, 1.0 / 64},
+                                       {0.01, 0.01F},
                                        {3.9, 3.0},
                                        {100.0, 127.0}}) {
     EXPECT_EQ(found(ramp<float>(largest), ramp<float>(largest / 2)), white) << largest;
@@ -75,9 +76,7 @@ TEST(WhiteLevel, IsAppliedAsNetpbmDefinesIt) {
   // Independent: round(v · 65535 / white) in integers.
   Photograph photograph = ramp<std::uint16_t>(1100);
   const Photograph before = ramp<std::uint16_t>(1100);
-  WhiteLevel level;
-  level.of_type[1] = 1023;
-  const double clipped = level.apply(photograph);
+  const double clipped = WhiteLevel{1, 1023}.apply(photograph);
   const auto& from = std::get<Image<std::uint16_t>>(before.pixels);
   const auto& to = std::get<Image<std::uint16_t>>(photograph.pixels);
   int above = 0;
@@ -92,16 +91,15 @@ TEST(WhiteLevel, IsAppliedAsNetpbmDefinesIt) {
 }
 
 TEST(WhiteLevel, GivenOnesAreCheckedWithTheType) {
-  WhiteLevelSearch search(70000);
-  search.add(ramp<std::uint16_t>(900));
-  EXPECT_EQ(error_of([&] { (void)search.found(); }),
-            "`white-level` is 70000, expected at most 65535, the largest value of 16-bit images");
-  for (const double wrong : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-    EXPECT_THROW(validate_white_level(wrong), UsageError) << wrong;
+  for (const double wrong : {70000.0, 0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    WhiteLevelSearch search(wrong);
+    search.add(ramp<std::uint16_t>(900));
+    EXPECT_THAT(error_of([&] { (void)search.found(); }),
+                HasSubstr("expected above 0 and at most 65535, the largest value of the images"));
   }
   Photograph floats = ramp<float>(20);
   Photograph* const both[] = {&floats, &floats};
-  EXPECT_FALSE(scale_to_white_level({both, 1}, 20));
+  EXPECT_THAT(scale_to_white_level({both, 1}, 20), IsEmpty());
   EXPECT_FLOAT_EQ(std::get<Image<float>>(floats.pixels).at(36, 2), 1);
 }
 
@@ -135,19 +133,19 @@ std::vector<std::uint8_t> tiff(int width, int height, unsigned tag, unsigned val
   return bytes;
 }
 
-/// A 16-bit PNG of a ramp with a chunk after its header.
-std::vector<std::uint8_t> png(double largest, const char* name,
-                              const std::vector<std::uint8_t>& content) {
+/// A 16-bit PNG of a ramp with an sBIT chunk after its header.
+std::vector<std::uint8_t> png(double largest, const std::vector<std::uint8_t>& content) {
   std::vector<std::uint8_t> bytes;
   encode_photograph("a.png", ramp<std::uint16_t>(largest), bytes);
   std::vector<std::uint8_t> chunk;
+  const std::string name = "sBIT";
   const auto put = [&](std::uint32_t number) {
     for (int shift = 24; shift >= 0; shift -= 8) {
       chunk.push_back(static_cast<std::uint8_t>(number >> shift));
     }
   };
   put(static_cast<std::uint32_t>(content.size()));
-  chunk.insert(chunk.end(), name, name + 4);
+  chunk.insert(chunk.end(), name.begin(), name.end());
   chunk.insert(chunk.end(), content.begin(), content.end());
   put(libdeflate_crc32(0, chunk.data() + 4, chunk.size() - 4));
   bytes.insert(bytes.begin() + 8 + 25, chunk.begin(), chunk.end());
@@ -166,25 +164,36 @@ TEST(StatedWhiteLevel, IsReadFromTiffTags) {
   EXPECT_EQ(stated_by(tiff(20, 10, kWhiteLevel, 4000), "a.tif"), 4000);
   EXPECT_EQ(stated_by(tiff(20, 10, kMaxSampleValue, 900), "a.tif"), 1023);
   EXPECT_EQ(stated_by(tiff(20, 10, kMaxSampleValue, 65535), "a.tif"), std::nullopt);
-  EXPECT_EQ(stated_by(tiff(20, 10, kWhiteLevel, 150), "a.tif"), std::nullopt) << "values up to 199";
   EXPECT_EQ(stated_by(tiff(20, 10, kWhiteLevel, 0), "a.tif"), std::nullopt);
   std::vector<std::uint8_t> beyond = tiff(20, 10, kWhiteLevel, 0);
   const std::size_t entry = 8 + 2 + 9 * 12;  // of five values, far beyond the end
   beyond[entry + 4] = 5;
   beyond[entry + 10] = 200;
-  EXPECT_EQ(stated_by(beyond, "a.tif"), std::nullopt);
+  EXPECT_THAT(error_of([&] { stated_by(beyond, "a.tif"); }), HasSubstr("a.tif: is truncated"));
 }
 
-TEST(StatedWhiteLevel, IsReadFromPngChunks) {
-  EXPECT_EQ(stated_by(png(900, "sBIT", {12}), "a.png"), 4095);
-  EXPECT_EQ(stated_by(png(60000, "sBIT", {12}), "a.png"), 65535) << "scaled, as the standard says";
-  const std::vector<std::uint8_t> exif = tiff(1, 1, 50717, 1023);
-  EXPECT_EQ(stated_by(png(900, "eXIf", exif), "a.png"), 1023);
+TEST(StatedWhiteLevel, IsReadFromPng) {
+  EXPECT_EQ(stated_by(png(900, {12, 10, 11}), "a.png"), 4095);
   for (const auto& damaged : std::vector<std::vector<std::uint8_t>>{{}, {0}, {16}, {255, 255}}) {
-    EXPECT_EQ(stated_by(png(900, "sBIT", damaged), "a.png"), std::nullopt);
+    EXPECT_EQ(stated_by(png(900, damaged), "a.png"), std::nullopt);
   }
-  EXPECT_EQ(stated_by(png(900, "eXIf", {'I', 'I', 42, 0, 255, 255, 255, 255}), "a.png"),
-            std::nullopt);
+}
+
+TEST(StatedWhiteLevel, CountsUnlessValuesAreAboveIt) {
+  const auto of_pair = [](double left, std::optional<double> right) {
+    Photograph pair[] = {ramp<std::uint16_t>(900), ramp<std::uint16_t>(1500)};
+    pair[0].origin.white_level = left;
+    pair[1].origin.white_level = right;
+    WhiteLevelSearch search;
+    search.add(pair[0]);
+    search.add(pair[1]);
+    return search.found();
+  };
+  EXPECT_EQ(of_pair(4000, std::nullopt).value, 4000);
+  EXPECT_EQ(of_pair(1023, 65535.0).value, 65535);
+  EXPECT_EQ(of_pair(1023, std::nullopt).value, 2047);
+  EXPECT_THAT(of_pair(4095, 4095.0).remarks.at(0).text,
+              "white level: 4095 (12 bits), as the files say");
 }
 
 TEST(StatedWhiteLevel, OfNetpbmIsAppliedByTheReader) {

@@ -124,8 +124,10 @@ std::optional<long long> max_tiff_bytes_per_byte(int compression, long long pixe
   }
 }
 
-/// The first directory of a classic TIFF file. libtiff checks what it reads itself.
-void check_tiff(const FileBytes& file) {
+/// The first directory of a classic TIFF file. libtiff checks what it reads itself. Returns what
+/// the file states as white: WhiteLevel (of DNG), else 2ⁿ − 1 of the bits of MaxSampleValue.
+/// Decoders scale 10, 12 and 14 bits to 16.
+std::optional<double> check_tiff(const FileBytes& file) {
   const std::endian order = file.has_at(0, "II") ? kLittle : kBig;
   if (file.integer<std::uint16_t>(2, order) != 42) {
     file.fail("is a BigTIFF file, expected classic TIFF");
@@ -138,6 +140,15 @@ void check_tiff(const FileBytes& file) {
   long long bits = 1;
   int compression = 1;
   bool is_subsampled = false;
+  long long white = 0;
+  long long max_sample = 0;
+  // One number per sample; more than two do not fit into the entry.
+  const auto first_short = [&](std::size_t entry, long long value) -> long long {
+    const bool is_elsewhere = file.integer<std::uint32_t>(entry + 4, order) > 2;
+    return is_elsewhere
+               ? file.integer<std::uint16_t>(file.integer<std::uint32_t>(entry + 8, order), order)
+               : value;
+  };
   for (int i = 0; i < entries; ++i) {
     const std::size_t entry = directory + 2 + 12 * static_cast<std::size_t>(i);
     const int tag = file.integer<std::uint16_t>(entry, order);
@@ -149,13 +160,11 @@ void check_tiff(const FileBytes& file) {
     } else if (tag == 257) {
       height = value;
     } else if (tag == 258) {
-      // One number per sample; more than two do not fit into the entry.
-      const bool is_elsewhere = file.integer<std::uint32_t>(entry + 4, order) > 2;
-      bits =
-          is_elsewhere
-              ? file.integer<std::uint16_t>(
-                    static_cast<std::size_t>(file.integer<std::uint32_t>(entry + 8, order)), order)
-              : value;
+      bits = first_short(entry, value);
+    } else if (tag == 281) {
+      max_sample = first_short(entry, value);
+    } else if (tag == 50717) {
+      white = first_short(entry, value);
     } else if (tag == 259) {
       compression = static_cast<int>(value);
     } else if (tag == 262) {
@@ -173,6 +182,13 @@ void check_tiff(const FileBytes& file) {
   if (const auto max = max_tiff_bytes_per_byte(compression, (pixel_bits + 7) / 8)) {
     check_holds_pixels(file, width, height, width * height * pixel_bits / 8 / *max);
   }
+  if (bits > 8 && bits < 16) {
+    return 65535;
+  }
+  white = white == 0 && max_sample > 0 && max_sample < 65535
+              ? (1LL << std::bit_width(static_cast<unsigned>(max_sample))) - 1
+              : white;
+  return white > 0 && white < 65535 ? std::optional<double>(white) : std::nullopt;
 }
 
 void check_webp(const FileBytes& file) {
@@ -286,7 +302,7 @@ ImageFormat detect_image_format(const FileBytes& file) {
   file.fail("is not an image, expected PNG, JPEG, TIFF, PNM, PFM, BMP, WebP or EXR");
 }
 
-void check_image_header(const FileBytes& file, ImageFormat format) {
+std::optional<double> check_image_header(const FileBytes& file, ImageFormat format) {
   switch (format) {
     case ImageFormat::kBmp:
       check_bmp(file);
@@ -295,8 +311,7 @@ void check_image_header(const FileBytes& file, ImageFormat format) {
       check_jpeg(file);
       break;
     case ImageFormat::kTiff:
-      check_tiff(file);
-      break;
+      return check_tiff(file);
     case ImageFormat::kWebp:
       check_webp(file);
       break;
@@ -308,6 +323,7 @@ void check_image_header(const FileBytes& file, ImageFormat format) {
     case ImageFormat::kPfm:
       break;
   }
+  return std::nullopt;
 }
 
 }  // namespace vantage

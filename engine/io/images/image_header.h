@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "engine/io/files/file_bytes.h"
 
 namespace vantage {
@@ -13,7 +15,8 @@ ImageFormat detect_image_format(const FileBytes& file);
 /// Read by our own code, because OpenCV allocates what a header says before it looks at the data.
 /// Checks before decoding: dimensions in bounds and, for BMP, JPEG, WebP and EXR, that the file is
 /// complete, for TIFF and JPEG that it can hold so many pixels. For the formats that OpenCV
-/// decodes, except PNG (see png_decoder.h). Throws Error.
-void check_image_header(const FileBytes& file, ImageFormat format);
+/// decodes, except PNG (see png_decoder.h). Returns PhotographOrigin::white_level, if a TIFF file
+/// states it. Throws Error.
+std::optional<double> check_image_header(const FileBytes& file, ImageFormat format);
 
 }  // namespace vantage

@@ -23,7 +23,6 @@
 #include "engine/io/images/opencv_setup.h"
 #include "engine/io/images/png_decoder.h"
 #include "engine/io/images/png_encoder.h"
-#include "engine/io/images/stated_white_level.h"
 
 namespace vantage {
 namespace {
@@ -189,19 +188,21 @@ DecodedImage decode(const FileBytes& file, Photograph& memory) {
       std::optional<Photograph> usual = decode_usual_png(structure, memory);
       result.photograph =
           usual ? std::move(*usual) : decode_any_png(file, strip_png(structure), memory);
-      result.photograph.origin.white_level = png_white_level(file, result.photograph);
+      // The standard wants values scaled to 16 bits, which WhiteLevelSearch sees.
+      if (const int bits = structure.significant_bits; bits > 0 && bits < structure.bit_depth) {
+        result.photograph.origin.white_level = (1 << bits) - 1;
+      }
       break;
     }
     case ImageFormat::kJpeg:
       check_image_header(file, format);
       result.photograph = decode_jpeg(file, memory);
       return result;
-    default:
-      check_image_header(file, format);
+    default: {
+      const std::optional<double> white = check_image_header(file, format);
       result.photograph = decode_with_opencv(file, file.all(), memory);
-      if (format == ImageFormat::kTiff) {
-        result.photograph.origin.white_level = tiff_white_level(file, result.photograph);
-      }
+      result.photograph.origin.white_level = white;
+    }
   }
   if (std::holds_alternative<Image<std::uint16_t>>(result.photograph.pixels)) {
     result.max_value = 65535;
@@ -273,7 +274,8 @@ Photograph read_photograph(const std::filesystem::path& path, Photograph memory)
   }
   // PNM files may define white as 1023, for example. Many say 65535 whatever their values are.
   const auto white = static_cast<double>(stored.max_value);
-  if (const WhiteLevel level{{white, white, 1}}; level.scales(stored.photograph)) {
+  if (const WhiteLevel level{stored.photograph.pixels.index(), white};
+      level.scales(stored.photograph)) {
     level.apply(stored.photograph);
   }
   return std::move(stored.photograph);

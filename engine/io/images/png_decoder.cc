@@ -212,6 +212,8 @@ PngStructure check_png_structure(const FileBytes& file) {
     } else if (type == "IDAT") {
       compressed_bytes += length;
       structure.pixel_data.push_back(chunk.subspan(8, length));
+    } else if (type == "sBIT" && length > 0) {
+      structure.significant_bits = *std::max_element(chunk.begin() + 8, chunk.end() - 4);
     } else if (type == "tRNS") {
       structure.has_transparent_colour = true;
     }

@@ -15,8 +15,9 @@ namespace vantage {
 struct PngStructure {
   int width = 0;
   int height = 0;
-  int bit_depth = 0;    ///< per channel or palette index: 1, 2, 4, 8 or 16
-  int colour_type = 0;  ///< 0 grey, 2 RGB, 3 palette, 4 grey with alpha, 6 RGBA
+  int bit_depth = 0;         ///< per channel or palette index: 1, 2, 4, 8 or 16
+  int colour_type = 0;       ///< 0 grey, 2 RGB, 3 palette, 4 grey with alpha, 6 RGBA
+  int significant_bits = 0;  ///< of an sBIT chunk, of the channel that has most; 0: not stated
   bool interlaced = false;
   bool has_transparent_colour = false;                    ///< a tRNS chunk
   std::vector<std::span<const std::uint8_t>> pixel_data;  ///< contents of the IDAT chunks

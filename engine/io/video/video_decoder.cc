@@ -52,7 +52,7 @@ LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& 
   codec->thread_type =
       FF_THREAD_SLICE | (can_decode_frames_at_once(decoder->id) ? FF_THREAD_FRAME : 0);
   codec->err_recognition = AV_EF_EXPLODE;
-  codec->export_side_data = AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;  // of coding_of_frame()
+  codec->export_side_data = AV_CODEC_EXPORT_DATA_VIDEO_ENC_PARAMS;  // of VideoPicture
   codec->max_pixels = max_image_pixels();
   if (result >= 0) {
     result = libav().avcodec_open2(codec.get(), decoder, nullptr);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/io/video/frame_quantisation.h"
+#include "engine/io/video/libav_functions.h"
 #include "engine/io/video/video_decoder.h"
 #include "engine/io/video/video_io.h"
 #include "engine/io/video/video_timing.h"
@@ -185,7 +185,11 @@ VideoReader::VideoReader(const std::filesystem::path& path)
   VideoDecoder& decoder = *state_->decoder;
   state_->width = decoder.stream().codecpar->width;
   state_->height = decoder.stream().codecpar->height;
-  state_->lossy_codec = lossy_codec_of(decoder.stream().codecpar->codec_id);
+  const AVCodecDescriptor* codec =
+      libav().avcodec_descriptor_get(decoder.stream().codecpar->codec_id);
+  if (codec != nullptr && (codec->props & AV_CODEC_PROP_LOSSY) != 0) {
+    state_->lossy_codec = codec->name;
+  }
   state_->timing = examine_video_timing(decoder.input(), decoder.stream(), path);
 }
 

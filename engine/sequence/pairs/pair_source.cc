@@ -146,7 +146,6 @@ void PairSourceOptions::validate() const {
   }
   validate_step(every);
   masks.validate();
-  validate_white_level(white_level);
 }
 
 void PairSource::make_images(FramePair& pair) const {
@@ -160,9 +159,6 @@ void PairSource::make_images(FramePair& pair) const {
 
 void PairSource::decode(FramePair& pair) const {
   make_images(pair);
-  if (!is_white_level_known_) {
-    return;
-  }
   double clipped = white_level_.apply(pair.left);
   if (pair.wants_right) {
     clipped = std::max(clipped, white_level_.apply(pair.right));
@@ -178,27 +174,24 @@ void PairSource::decode(FramePair& pair) const {
 
 namespace {
 
-/// Of files; whole, so that parts of a run agree. Pairs that cannot be read do not count.
+/// Of the whole input, so that parts of a run agree. Pairs that cannot be read do not count.
 WhiteLevel white_level_of(PairSource& pairs, std::optional<double> given) {
   WhiteLevelSearch search(given);
   const int count = pairs.pair_count();
-  const int looked_at = pairs.is_stream() ? 0 : std::min(count, kPairsForWhiteLevel);
+  const int looked_at = std::min(count, kPairsForWhiteLevel);
   FramePair pair;
   for (int i = 0; i < looked_at && (i == 0 || search.guesses()); ++i) {
     try {
-      pairs.skip_to(looked_at == 1 ? 0 : static_cast<int>(i * (count - 1LL) / (looked_at - 1)));
-      if (pairs.fetch(pair)) {
-        pairs.decode(pair);
-        search.add(pair.left);
-        search.add(pair.right);
-      }
+      pairs.skip_to(static_cast<int>(i * (count - 1LL) / std::max(1, looked_at - 1)));
+      pairs.fetch(pair);
+      pairs.decode(pair);
+      search.add(pair.left);
+      search.add(pair.right);
     } catch (const Error&) {
       continue;  // the run itself reports bad frames
     }
   }
-  if (looked_at > 0) {
-    pairs.skip_to(0);
-  }
+  pairs.skip_to(0);
   return search.found();
 }
 

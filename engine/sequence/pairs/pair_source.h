@@ -124,10 +124,7 @@ class PairSource {
   /// videos, splits packed frames; then scales them to the white level, and remarks on what that
   /// clips. Thread rule: concurrently for different pairs. Throws Error.
   void decode(FramePair& pair) const;
-  void set_white_level(WhiteLevel level) {
-    white_level_ = std::move(level);
-    is_white_level_known_ = true;
-  }
+  void set_white_level(WhiteLevel level) { white_level_ = std::move(level); }
   [[nodiscard]] virtual const WhiteLevel& white_level() const { return white_level_; }
 
   /// Makes pair `index` (0 ≤ index ≤ pair_count()) the result of the next fetch().
@@ -185,7 +182,6 @@ class PairSource {
 
  private:
   WhiteLevel white_level_;
-  bool is_white_level_known_ = false;  ///< before, decode() leaves values, and what files state
 };
 
 /// Throws Error when a source cannot be opened, UsageError for invalid options.
