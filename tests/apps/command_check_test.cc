@@ -75,6 +75,29 @@ TEST_F(CheckCommand, KeepsOptionsOfTheMatch) {
   succeeds(run_vantage(typed));
 }
 
+TEST_F(CheckCommand, SaysWhatFilesAndPixelsTell) {
+  const std::string files[] = {folder_ / "left.jpg", folder_ / "right.jpg"};
+  write_photograph(files[0], {view(0)});
+  write_photograph(files[1], {view(kDisparity_px)});
+  EXPECT_THAT(succeeds(check({files[0], files[1]})).out, HasSubstr("8 bits, JPEG in steps of"));
+  EXPECT_EQ(results()["pairs"][0]["left"]["codec"], "JPEG");
+  EXPECT_GT(results()["pairs"][0]["left"]["step_grey_levels"], 0);
+
+  for (const int shift : {0, kDisparity_px}) {
+    const Image<std::uint8_t> eight_bits = view(shift);
+    Image<std::uint16_t> twelve_bits(kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        twelve_bits.at(x, y) = static_cast<std::uint16_t>(16 * eight_bits.at(x, y));
+      }
+    }
+    write_photograph(shift == 0 ? left_ : right_, {std::move(twelve_bits)});
+  }
+  EXPECT_THAT(succeeds(check({left_, right_})).out, HasSubstr("white level: 4095"));
+  EXPECT_NEAR(results()["pairs"][0]["left"]["mean_grey"], 119.5, 5);
+  EXPECT_EQ(results()["pairs"][0]["left"]["bits"], 16);
+}
+
 TEST_F(CheckCommand, ExchangesSidesThatAreExchanged) {
   succeeds(check({right_, left_}));
   EXPECT_EQ(results()["pairs"][0]["rectification"]["looks_exchanged"], true);
