@@ -36,7 +36,7 @@ void MatchResult::match(const PairMatcher& matcher, const std::vector<Photograph
   const VolumeRequest posterior{.side = side, .sink = &moments};
   MatchRequest request{.left = side == Side::kLeft || wanted.other,
                        .right = side == Side::kRight || wanted.other,
-                       .confidence = wanted.confidence};
+                       .probability = wanted.confidence};
   if (wanted.posterior) {
     request.volumes = {&posterior, 1};
   }
@@ -287,8 +287,8 @@ void bind_match_result(py::module_& module) {
       .def_property_readonly("right_disparity", with_owner(&MatchResult::right_disparity),
                              "float32: the map of the right image. Not of several images.")
       .def_property_readonly("confidence", with_owner(&MatchResult::confidence),
-                             "float32: confidence before refinement; its scale depends on the "
-                             "method, see `vantage match --confidence`.")
+                             "float32: probability that the disparity is within 1 px of the true "
+                             "one; 0 where it is unknown.")
       .def_property_readonly("posterior_mean", with_owner(&MatchResult::posterior_mean),
                              "float32: mean of p(d) before refinement, in pixels; NaN: no "
                              "probability.\n\nUsageError for methods without probabilities: it "
@@ -313,6 +313,10 @@ void bind_match_result(py::module_& module) {
       .def_property_readonly(
           "filled_share", [](const MatchResult& self) { return self.shares().filled; },
           "float: share of the pixels that were filled from their neighbours.")
+      .def_property_readonly(
+          "reliable_share", [](const MatchResult& self) { return self.shares().reliable; },
+          "float: expected share of disparities within 1 px of the true ones; below 0.4 the match "
+          "warns.")
       .def("__repr__", &MatchResult::text)
       .def("preview", &MatchResult::preview,
            "The map in false colours over the range searched: uint8, HxWx3, RGB.")

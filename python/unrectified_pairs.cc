@@ -35,8 +35,8 @@ MatchOptions UnrectifiedPairs::match(const MatchOptions& options, const Photogra
   }
   UnrectifiedMatcher(used, cameras->grids, execution_)
       .match(left, right,
-             {.left = request.left, .right = request.right, .confidence = request.confidence}, maps,
-             &report);
+             {.left = request.left, .right = request.right, .probability = request.probability},
+             maps, &report);
   if (on_rectified_) {
     for (const Side side : {Side::kLeft, Side::kRight}) {
       if (side == Side::kLeft ? request.left : request.right) {

@@ -62,11 +62,11 @@ void add_file_settings(Settings& settings, MatchJob& job) {
   output.required = true;
   settings.path("output-right", job.output_right, "FILE",
                 "Also write the disparity map of the right image");
-  settings.path("confidence", job.confidence, "FILE",
-                fmt::format("Write the confidence before refinement: {}; evidence with cost "
-                            "gradient, maximum probability with bayes and the presets, certainty "
-                            "with local-stopping, else the winner's margin",
-                            listed_map_formats(MapContent::kConfidence)));
+  settings.path(
+      "confidence", job.confidence, "FILE",
+      fmt::format("Write the probability of each disparity to be within 1 px of the true one, "
+                  "0 where it is unknown: {}",
+                  listed_map_formats(MapContent::kConfidence)));
   settings.path("unmatched", job.unmatched, "MASK.png", "Write a mask of the unmatched pixels");
   settings.path("unmatched-right", job.unmatched_right, "MASK.png",
                 "Write a mask of the unmatched pixels of the right map");

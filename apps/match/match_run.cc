@@ -134,7 +134,7 @@ void match_images(const MatchJob& job, const StereoMatcher& matcher,
       .right = job.wants_right(),
       .unmatched = !(job.unmatched.empty() && job.unmatched_right.empty()) ||
                    job.wants_cyclopean() || job.depth.outputs.reads_unmatched(),
-      .confidence = !job.confidence.empty() || job.depth.outputs.reads_confidence(),
+      .probability = !job.confidence.empty() || job.depth.outputs.reads_confidence(),
       .volumes = volumes};
   if (!job.has_several()) {
     matcher.match(images[0], images[1], request, maps, &report);
@@ -154,7 +154,7 @@ void match_unrectified(const MatchJob& job, const Rectifier& rectifier,
       .match(images[0], images[1],
              {.left = job.is_left(),
               .right = job.wants_right(),
-              .confidence = !job.confidence.empty()},
+              .probability = !job.confidence.empty()},
              maps, &report);
   if (job.rectified_pixels) {
     bring_to_rectified(rectifier, Side::kLeft, execution, maps.left);

@@ -40,7 +40,8 @@ SettingValue noise_values(const FoundNoise& noise) {
 SettingValue map_values(const MapShares& shares) {
   return {{"matched_share", shares.matched},
           {"filled_share", shares.filled},
-          {"unknown_share", shares.unknown}};
+          {"unknown_share", shares.unknown},
+          {"expected_share_within_1_px", shares.reliable}};
 }
 
 }  // namespace vantage::apps

@@ -13,8 +13,9 @@ namespace vantage {
 struct MatchedMap {
   DisparityMap disparity_px = {};
   DisparityMap disparity_y_px = {};  ///< y_left − y_right of a two-dimensional search, else empty
-  /// Confidence of the winners, before refinement: M = max Ê for evidence (5.12), max p for Bayes,
-  /// the certainty in use for local stopping, the winner margin (6.13) otherwise.
+  /// With MatchRequest::probability: that of each disparity to be within 1 px of the true one. With
+  /// `confidence`: of the winners, before refinement: M = max Ê for evidence (5.12), max p for
+  /// Bayes, the certainty in use for local stopping, the winner margin (6.13) otherwise.
   Image<float> confidence = {};
   Mask unmatched = {};  ///< 255 where refinement or the border left the pixel without a match
 };

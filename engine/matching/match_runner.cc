@@ -11,6 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/image/left_out.h"
+#include "engine/matching/worth/map_confidence.h"
 
 namespace vantage {
 namespace {
@@ -189,17 +190,29 @@ void MatchRunner::erase_left_out(const MatchCall& call, DisparityMaps& maps,
   }
 }
 
-/// What the finished map is worth.
+/// What the finished maps are worth, and the confidence of their pixels.
 void MatchRunner::examine(const MatchCall& call, SearchJob& job) const {
-  const Side side = !call.baselines.empty() ? call.reference_side
-                    : job.request.left      ? Side::kLeft
-                                            : Side::kRight;
-  const bool has_mask = options_.refinement || job.request.unmatched;
-  if (job.request.wants(side)) {
-    job.clock.start("examine");
-    const Mask& left_out =
-        job.images[call.baselines.empty() ? index_of(side) : 0].photograph->left_out;
-    job.report.shares = map_shares(job.maps.of(side), has_mask, left_out, execution_);
+  job.clock.start("examine");
+  const bool is_pair = call.baselines.empty();
+  const bool is_along_rows = call.grids == nullptr && !options_.disparities_y;
+  for (const Side side : {Side::kLeft, Side::kRight}) {
+    if (!job.request.wants(side) || (!is_pair && side != call.reference_side)) {
+      continue;
+    }
+    const std::size_t image = is_pair ? index_of(side) : 0;
+    const FinishedMap finished{.map = &job.maps.of(side),
+                               .has_mask = options_.refinement || job.request.unmatched,
+                               .is_checked = job.is_checked(),
+                               .side = side,
+                               .image = job.images[image].photograph,
+                               .other = is_along_rows ? job.images[1 - image].photograph : nullptr};
+    if (!job.report.shares) {
+      job.report.shares = map_shares(finished, execution_);
+      warn_of_doubtful_map(*job.report.shares, job.report.remarks);
+    }
+    if (job.request.probability) {
+      map_confidence(finished, execution_, job.maps.of(side).confidence);
+    }
   }
 }
 

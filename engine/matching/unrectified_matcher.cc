@@ -48,7 +48,7 @@ void UnrectifiedMatcher::match(const Photograph& left, const Photograph& right,
                                MatchReport* report) const {
   require_equal_sizes(left, "left image", right, "right image");
   runner_->run({.images = {{&left}, {&right}}, .grids = grids_.get()},
-               {.left = request.left, .right = request.right, .confidence = request.confidence},
+               {.left = request.left, .right = request.right, .probability = request.probability},
                maps, report);
 }
 

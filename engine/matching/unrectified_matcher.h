@@ -18,7 +18,7 @@ class MatchRunner;
 struct UnrectifiedRequest {
   bool left = true;
   bool right = true;
-  bool confidence = false;
+  bool probability = false;  ///< see MatchRequest
 };
 
 /// Matches photographs of a calibrated pair as they are, with rectification folded into the search

@@ -71,6 +71,7 @@ MapShares mean_shares(const SequenceReport& sequence) {
     mean.matched += shares.matched / frames;
     mean.filled += shares.filled / frames;
     mean.unknown += shares.unknown / frames;
+    mean.reliable += shares.reliable / frames;
   }
   return mean;
 }

@@ -25,7 +25,7 @@ struct MatchReport : SearchReport {
   std::vector<StageTime> stages;
   /// With MatchRequest::previous: the share of tiles that were searched, of the map with more.
   std::optional<double> searched_share;
-  /// Of the left map if it was requested, else of the right one.
+  /// What the left map is worth if it was requested, else the right one.
   std::optional<MapShares> shares;
   std::vector<Remark> remarks;
   FoundNoise noise;  ///< in the images of the call

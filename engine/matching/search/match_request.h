@@ -17,7 +17,9 @@ struct MatchRequest {
   bool left = true;
   bool right = true;
   bool unmatched = true;    ///< the masks of the maps
-  bool confidence = false;  ///< the confidence of the maps
+  bool confidence = false;  ///< the confidence of the winners, before refinement
+  /// In its place the probability of each disparity of the finished maps, see map_confidence().
+  bool probability = false;
   /// Volumes written to their sinks while maps are computed, not for a reduced search-size. Maps do
   /// not depend on them.
   std::span<const VolumeRequest> volumes = {};

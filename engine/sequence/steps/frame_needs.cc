@@ -13,8 +13,8 @@ MatchRequest match_request(const SequenceOptions& options) {
                     options.temporal.weight > 0;  // both are stored for the next frame
   return {.left = !right_is_primary || both || options.saves_cyclopean(),
           .right = right_is_primary || both,
-          .confidence = options.saves(SequenceOutput::kConfidence) ||
-                        (options.saves_points() && options.cloud.reads_confidence())};
+          .probability = options.saves(SequenceOutput::kConfidence) ||
+                         (options.saves_points() && options.cloud.reads_confidence())};
 }
 
 bool videos_show_views(const SequenceOptions& options) {

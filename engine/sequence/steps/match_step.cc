@@ -58,8 +58,8 @@ class MatchStep final : public RunStep {
   void match_along_lines(FrameSlot& slot, const MatchRequest& request) const {
     slot.shot->unrectified->match(
         slot.pair.left, slot.pair.right,
-        {.left = request.left, .right = request.right, .confidence = request.confidence}, slot.maps,
-        &slot.match);
+        {.left = request.left, .right = request.right, .probability = request.probability},
+        slot.maps, &slot.match);
     if (options_.unrectified != UnrectifiedSearch::kOnRectified) {
       return;
     }
