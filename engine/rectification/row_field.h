@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "engine/rectification/feature_matches.h"
+
+namespace vantage {
+
+/// How the rows of a pair differ: what `left` shows in row y, `right` shows in row y + v(x, y),
+/// where x is the column in `right`. A polynomial of as many terms as the points carry.
+class RowField {
+ public:
+  /// 1; x, y; xy, y² (with these, a homography of small angles); y (x² + y²) (a radial distortion).
+  /// x and y are measured from the centre, in halves of the width.
+  static constexpr int kMaxTerms = 6;
+  using Terms = std::array<double, kMaxTerms>;
+
+  RowField() = default;
+  RowField(int width_px, int height_px, const Terms& coefficients_px)
+      : width_(width_px), height_(height_px), coefficients_(coefficients_px) {}
+
+  [[nodiscard]] int width() const { return width_; }
+  [[nodiscard]] int height() const { return height_; }
+  [[nodiscard]] const Terms& coefficients_px() const { return coefficients_; }
+
+  /// v at a position, in pixels. Positive where the right image is lower.
+  [[nodiscard]] double at(double x, double y) const;
+  /// The row of `left` that row y of `right` corresponds to: y' with y' + v(x, y') = y.
+  [[nodiscard]] double row_of_left(double x, double y) const;
+  /// Largest |v| in the image.
+  [[nodiscard]] double max_px() const;
+  /// v at the centre.
+  [[nodiscard]] double offset_px() const { return coefficients_[0]; }
+  /// Rotation of the right image there, clockwise.
+  [[nodiscard]] double turn_degrees() const;
+
+  [[nodiscard]] static Terms terms_at(double x, double y, int width_px, int height_px);
+
+ private:
+  int width_ = 0;
+  int height_ = 0;
+  Terms coefficients_ = {};
+};
+
+/// What the points of a pair say about its rows.
+struct RowEstimate {
+  RowField field;
+  int terms = 0;            ///< 1, 3, 5 or 6 that are not 0
+  int points = 0;           ///< found
+  int inliers = 0;          ///< of these, what `field` explains
+  double residual_px = 0;   ///< robust standard deviation of the inliers
+  double deviation_px = 0;  ///< largest standard deviation of v in the image
+
+  /// Whether resampling the right image gains more than it blurs: above kMinCorrection_px
+  /// somewhere, and certain.
+  [[nodiscard]] bool pays() const;
+};
+
+/// Rows that are off by less are left as they are.
+inline constexpr double kMinCorrection_px = 0.12;
+/// Beyond, a pair is not nearly rectified.
+inline constexpr double kMaxCorrection_px = 6;
+/// Fewer points say nothing.
+inline constexpr int kMinRowPoints = 30;
+
+/// The smooth field that most of the points agree on: weights decrease with the distance from the
+/// fit, whose scale goes from pixels down to that of the points. Terms are added in groups, only if
+/// they are significant (F-test) and the points are spread so that v is certain in all the image.
+/// None if fewer than kMinRowPoints or fewer than half of the points agree, or if v exceeds
+/// kMaxCorrection_px. Thread rule: pure.
+std::optional<RowEstimate> fit_rows(const std::vector<PointMatch>& points, int width_px,
+                                    int height_px);
+
+}  // namespace vantage
