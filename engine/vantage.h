@@ -38,6 +38,8 @@
 #include "engine/rectification/rectification_file.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/rectification/rectifier.h"
+#include "engine/rectification/row_check.h"
+#include "engine/rectification/row_correction.h"
 #include "engine/rectification/stereo_calibration.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "engine/rectification/vertical_error.h"

@@ -9,7 +9,6 @@
 #include "apps/inputs/given_maps.h"
 #include "apps/inputs/kitti_cameras_choice.h"
 #include "apps/inputs/masked_images.h"
-#include "apps/inputs/rectification_check.h"
 #include "apps/reports/remarks.h"
 #include "engine/error.h"
 #include "engine/image/white_level.h"
@@ -70,8 +69,8 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
   add_kept_outline_setting(settings, pair.rectification);
   add_kitti_cameras_setting(settings, pair.kitti_cameras);
   add_scene_mask_settings(settings, pair.masks);
-  add_rectification_check_setting(settings, pair.check_rectification);
   add_white_level_setting(settings, pair.white_level);
+  add_row_settings(settings, pair.rows);
 }
 
 void check_pair(const PairInput& pair, const Settings& settings) {
@@ -126,9 +125,15 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     result.cameras = rectify(read_stereo_calibration(pair.calibration, pair.kitti_cameras),
                              pair.rectification, execution, report, result);
   }
-  if (pair.check_rectification) {
-    warn_unless_rectified(settings, common, expects_negative_disparities(pair.match), result.left,
-                          result.right, report);
+  if (pair.rows.check) {
+    const auto rows = correct_rows({.settings = settings,
+                                    .common = common,
+                                    .mode = pair.rows.mode,
+                                    .expects_negative = expects_negative_disparities(pair.match)},
+                                   result.left, result.right, execution, report);
+    if (rows && pair.has_maps()) {
+      bring_to_corrected_rows(rows->field, result.maps.right, execution);
+    }
   }
   if (!pair.has_maps()) {
     const bool is_found = pair.match.disparities_auto;

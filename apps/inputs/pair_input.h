@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/inputs/rectification_check.h"
 #include "apps/process/outputs.h"
 #include "apps/reports/run_report.h"
 #include "apps/settings/common_options.h"
@@ -30,7 +31,7 @@ struct PairInput {
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();
   std::optional<double> white_level;  ///< empty: see WhiteLevelSearch
-  bool check_rectification = true;
+  RowSettings rows;
   SceneMaskOptions masks;
 
   [[nodiscard]] bool has_maps() const { return !left_disparity.empty(); }

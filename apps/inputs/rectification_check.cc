@@ -3,55 +3,58 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cstdio>
-#include <optional>
-#include <string_view>
+#include <cmath>
+#include <utility>
 
 #include "apps/process/tell.h"
 #include "apps/reports/vertical_error_report.h"
-#include "engine/rectification/vertical_error.h"
+#include "engine/rectification/row_check.h"
 #include "engine/seconds_since.h"
 #include "scheduler/trace.h"
 
 namespace vantage::apps {
 namespace {
 
-constexpr std::string_view kRows = "rows";
+constexpr double kToldTurn_degrees = 0.005;
 
-/// A check of rows, and how long it took.
-struct RowCheck {
-  std::optional<VerticalError> error;
-  double seconds = 0;
-};
-
-RowCheck check_rows(const Photograph& left, const Photograph& right) {
+RowCheck timed_check(const Photograph& left, const Photograph& right, Execution& execution,
+                     RunReport& report) {
   const scheduler::Span span("check");
   const auto start = std::chrono::steady_clock::now();
-  RowCheck check;
-  check.error = check_rectification(left, right);
-  check.seconds = seconds_since(start);
+  RowCheck check = check_rows(left, right, &execution);
+  report.add_stage("check", seconds_since(start));
   return check;
 }
 
-void tell_of(const RowCheck& check, const Settings& settings, const CommonOptions& common,
-             bool expects_negative, std::string_view lines, RunReport& report) {
-  report.add_stage("check", check.seconds);
+std::string what_to_do(const RowTask& task, const RowCheck& check) {
+  if (check.pays()) {
+    return "; leave out --rows as-is to correct them";
+  }
+  return fmt::format("; that is more than --rows auto corrects{}",
+                     task.lines == "rows" ? ", see 'vantage rectify'" : "");
+}
+
+void tell_of(const RowTask& task, const RowCheck& check, bool is_corrected, RunReport& report) {
   if (!check.error) {
     return;
   }
   const VerticalError& error = *check.error;
+  const bool corresponds = is_corrected || (check.rows && !check.pays()) || is_rectified(error);
+  const bool looks_exchanged = error.looks_exchanged() && !task.expects_negative;
   SettingValue values = vertical_error_values(error);
-  values["is_rectified"] = is_rectified(error);
-  const bool looks_exchanged = error.looks_exchanged() && !expects_negative;
+  values["is_rectified"] = corresponds;
   values["looks_exchanged"] = looks_exchanged;
   report.add_result("rectification", std::move(values));
-  if (!is_rectified(error) && !common.quiet) {
-    tell("{}: warning: the pair is not rectified: {}; {}{}\n", settings.command(),
-         cost_text(error, lines), vertical_error_text(error),
-         lines == kRows ? "; see 'vantage rectify'" : "");
+  if (task.common.quiet) {
+    return;
   }
-  if (looks_exchanged && !common.quiet) {
-    tell("{}: warning: {}\n", settings.command(), exchanged_text(error));
+  const std::string& command = task.settings.command();
+  if (!corresponds) {
+    tell("{}: warning: the pair is not rectified: {}; {}{}\n", command,
+         cost_text(error, task.lines), vertical_error_text(error), what_to_do(task, check));
+  }
+  if (looks_exchanged) {
+    tell("{}: warning: {}\n", command, exchanged_text(error));
   }
 }
 
@@ -61,37 +64,76 @@ bool expects_negative_disparities(const MatchOptions& options) {
   return !options.disparities_auto && -options.disparities.min > options.disparities.max;
 }
 
+void add_row_settings(Settings& settings, RowSettings& rows) {
+  settings.choice<RowMode>(
+      "rows", rows.mode, {{"auto", RowMode::kAuto}, {"as-is", RowMode::kAsIs}},
+      "Rows that do not correspond. auto: where the pair itself shows a smooth offset of up to a "
+      "few pixels, the right image is resampled, and its maps are brought back to its pixels");
+  add_rectification_check_setting(
+      settings, rows.check,
+      "Do not look at the rows: correct nothing, and do not warn of pairs that are not rectified "
+      "or whose left and right are exchanged");
+}
+
 void add_rectification_check_setting(Settings& settings, bool& wanted, const char* text) {
   Setting& setting = settings.add("no-rectification-check", "", text);
   setting.flag = true;
-  setting.changes_results = false;
   setting.set = [&wanted](const SettingValue& value) { wanted = !to_truth(value); };
   setting.get = [&wanted] { return !wanted; };
 }
 
-void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
-                           bool expects_negative, const Photograph& left, const Photograph& right,
-                           RunReport& report) {
-  // The user of the pair reports images of different sizes.
-  if (left.width() == right.width() && left.height() == right.height()) {
-    tell_of(check_rows(left, right), settings, common, expects_negative, kRows, report);
-  }
+SettingValue row_values(const RowEstimate& rows, bool is_corrected) {
+  return {{"offset_px", rows.field.offset_px()},
+          {"turn_degrees", rows.field.turn_degrees()},
+          {"largest_px", rows.field.max_px()},
+          {"terms", rows.terms},
+          {"residual_px", rows.residual_px},
+          {"points", rows.inliers},
+          {"corrected", is_corrected}};
 }
 
-void warn_unless_rectified_beside(const std::function<void()>& work, const Settings& settings,
-                                  const CommonOptions& common, bool expects_negative,
-                                  std::string_view lines, const Photograph& left,
-                                  const Photograph& right, Execution& execution,
-                                  RunReport& report) {
-  RowCheck check;
-  execution.executor().parallel_for(2, [&](int task) {
-    if (task == 0) {
-      work();
-    } else {
-      check = check_rows(left, right);
-    }
+std::string row_text(const RowEstimate& rows, std::string_view lines) {
+  const double offset_px = rows.field.offset_px();
+  const double turn = rows.field.turn_degrees();
+  const bool is_of_rows = lines == "rows";
+  std::string text = fmt::format("right image {:.2f} px {}", std::abs(offset_px),
+                                 offset_px >= 0 ? (is_of_rows ? "lower" : "to the right")
+                                                : (is_of_rows ? "higher" : "to the left"));
+  if (std::abs(turn) >= kToldTurn_degrees) {
+    text += fmt::format(", turned {:.2f} degrees", is_of_rows ? turn : -turn);
+  }
+  if (rows.terms > 3) {
+    text += fmt::format(", up to {:.1f} px at the border", rows.field.max_px());
+  }
+  return text;
+}
+
+std::optional<CorrectedRows> correct_rows(const RowTask& task, const Photograph& left,
+                                          Photograph& right, Execution& execution,
+                                          RunReport& report) {
+  if (left.width() != right.width() || left.height() != right.height()) {
+    return std::nullopt;
+  }
+  const RowCheck check = timed_check(left, right, execution, report);
+  const bool corrects = task.mode == RowMode::kAuto && check.pays();
+  if (check.rows) {
+    report.add_result("rows", row_values(*check.rows, corrects));
+  }
+  tell_of(task, check, corrects, report);
+  if (!corrects) {
+    return std::nullopt;
+  }
+  if (!task.common.quiet) {
+    tell("{}: {}: {}; corrected, points agree to {:.2f} px\n", task.settings.command(), task.lines,
+         row_text(*check.rows, task.lines), check.rows->residual_px);
+  }
+  CorrectedRows result{.field = check.rows->field, .given = {}};
+  report.timed_compute("rows", [&] {
+    Photograph corrected;
+    vantage::correct_rows(right, result.field, corrected, execution);
+    result.given = std::exchange(right, std::move(corrected));
   });
-  tell_of(check, settings, common, expects_negative, lines, report);
+  return result;
 }
 
 }  // namespace vantage::apps

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <optional>
 #include <string_view>
 
 #include "apps/reports/run_report.h"
@@ -8,33 +8,53 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/settings.h"
+#include "engine/rectification/row_correction.h"
 
 namespace vantage::apps {
 
-/// --no-rectification-check, with its help text; `wanted` is true without it.
-void add_rectification_check_setting(
-    Settings& settings, bool& wanted,
-    const char* text =
-        "Do not check, and warn, whether rows correspond and whether left and right are exchanged");
+/// What is done about the rows of a pair.
+struct RowSettings {
+  RowMode mode = RowMode::kAuto;
+  bool check = true;  ///< false: nobody looks at them
+};
+
+/// --rows and --no-rectification-check.
+void add_row_settings(Settings& settings, RowSettings& rows);
+/// --no-rectification-check alone, with its help text.
+void add_rectification_check_setting(Settings& settings, bool& wanted, const char* text);
 
 /// Whether the user chose a range whose disparities are mostly negative. Call it before
 /// choose_disparities(), which replaces an automatic range.
 bool expects_negative_disparities(const MatchOptions& options);
 
-/// Checks whether the rows of a pair correspond, as those of a rectified pair do. Adds the numbers
-/// to the report as `results.rectification`. Warns on stderr if the systematic row error (RMS)
-/// makes more than kMaxMoreBad_percent of the pixels wrong, and, unless `expects_negative`, if
-/// nearly all disparities are negative. Results and exit codes do not depend on it. Its time is the
-/// stage "check", not compute time. No warning if the images have too few points in common.
-void warn_unless_rectified(const Settings& settings, const CommonOptions& common,
-                           bool expects_negative, const Photograph& left, const Photograph& right,
-                           RunReport& report);
-/// As warn_unless_rectified(), but runs concurrently with `work` on the same pair, because the
-/// check uses one thread only. Warns after both have ended; `work` may throw. `lines`: "rows", or
-/// "columns" for a transposed pair.
-void warn_unless_rectified_beside(const std::function<void()>& work, const Settings& settings,
-                                  const CommonOptions& common, bool expects_negative,
-                                  std::string_view lines, const Photograph& left,
-                                  const Photograph& right, Execution& execution, RunReport& report);
+/// How rows are looked at, and what is told.
+struct RowTask {
+  const Settings& settings;
+  const CommonOptions& common;
+  RowMode mode = RowMode::kAuto;
+  bool expects_negative = false;    ///< images are not exchanged where most disparities are
+  std::string_view lines = "rows";  ///< or "columns" of a transposed pair
+};
+
+/// What a correction replaced.
+struct CorrectedRows {
+  RowField field;
+  Photograph given;  ///< the right image
+};
+
+/// Looks at the rows of a pair, and corrects `right` in place with RowMode::kAuto where that pays.
+/// A line on stderr says so. Warns if the rows are off by more than can be corrected, or than
+/// kMaxMoreBad_percent with kAsIs, and if nearly all disparities are negative. The report gets
+/// `results.rows` and `results.rectification`, and the stage "check", which is no compute time; the
+/// correction is. Nothing is done for images of different sizes, which the user of the pair
+/// reports.
+std::optional<CorrectedRows> correct_rows(const RowTask& task, const Photograph& left,
+                                          Photograph& right, Execution& execution,
+                                          RunReport& report);
+
+/// Of the report.
+SettingValue row_values(const RowEstimate& rows, bool is_corrected);
+/// "right image 1.3 px lower, turned 0.11 degrees".
+std::string row_text(const RowEstimate& rows, std::string_view lines);
 
 }  // namespace vantage::apps

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "apps/inputs/input_limits.h"
-#include "apps/inputs/rectification_check.h"
 #include "apps/process/outputs.h"
 #include "engine/combinations/combinations.h"
 #include "engine/error.h"
@@ -89,8 +88,8 @@ void add_file_settings(Settings& settings, MatchJob& job) {
       "the left camera alone, 255 the right one alone, 64 no match");
   add_scene_mask_settings(settings, job.masks);
   add_volume_settings(settings, job.volume);
-  add_rectification_check_setting(settings, job.check_rectification);
   add_white_level_setting(settings, job.white_level);
+  add_row_settings(settings, job.rows);
 }
 
 void check_several(const MatchJob& job) {

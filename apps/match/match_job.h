@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/inputs/rectification_check.h"
 #include "apps/settings/applied_tuning.h"
 #include "apps/settings/common_options.h"
 #include "apps/settings/depth_settings.h"
@@ -41,7 +42,7 @@ struct MatchJob {
   /// Cameras stand one above the other, the left image's above: columns are searched.
   bool vertical = false;
   std::optional<double> white_level;  ///< of all images; empty: see WhiteLevelSearch
-  bool check_rectification = true;
+  RowSettings rows;
   SceneMaskOptions masks;
 
   /// δ of depths.

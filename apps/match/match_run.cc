@@ -109,6 +109,30 @@ struct MatchInputs {
     }
   }
 
+  /// Corrects the right image where that is wanted; its maps are then on corrected rows.
+  void correct(const MatchJob& job, const Settings& settings, Execution& execution,
+               RunReport& report) {
+    if (!job.rows.check || job.match.disparities_y || job.match.disparities_y_auto || rectifier) {
+      return;
+    }
+    // Volumes and what is made of them are not brought back.
+    const bool can_correct = !job.has_several() &&
+                             (job.is_left() || (job.volume.file.empty() && !job.wants_posterior()));
+    rows = correct_rows({.settings = settings,
+                         .common = job.common,
+                         .mode = can_correct ? job.rows.mode : RowMode::kAsIs,
+                         .expects_negative = expects_negative_disparities(job.match),
+                         .lines = job.vertical ? "columns" : "rows"},
+                        left(), images[first_is_left ? 1 : 0], execution, report);
+  }
+  /// The right image and its maps as they were given.
+  void bring_back(DisparityMaps& maps, Execution& execution) {
+    if (rows) {
+      bring_to_given_rows(rows->field, maps.right, execution);
+      images[1] = std::move(rows->given);
+    }
+  }
+
   /// A rectified pair, for what is estimated before the match.
   [[nodiscard]] const Photograph& left() const {
     return rectifier ? rectified[0] : images[first_is_left ? 0 : 1];
@@ -124,6 +148,7 @@ struct MatchInputs {
   bool first_is_left;
   std::optional<Rectifier> rectifier = std::nullopt;  ///< of --unrectified
   std::array<Photograph, 2> rectified = {};           ///< by it
+  std::optional<CorrectedRows> rows = std::nullopt;   ///< of the right image
 };
 
 void match_images(const MatchJob& job, const StereoMatcher& matcher,
@@ -162,11 +187,14 @@ void match_unrectified(const MatchJob& job, const Rectifier& rectifier,
   }
 }
 
-MemoryUse memory_use(const std::vector<Photograph>& images, const DisparityMaps& maps,
+MemoryUse memory_use(const MatchInputs& inputs, const DisparityMaps& maps,
                      const StereoMatcher& matcher, Execution& execution) {
   MemoryUse use;
-  for (const Photograph& image : images) {
+  for (const Photograph& image : inputs.images) {
     use.add("photographs", held_bytes(image));
+  }
+  if (inputs.rows) {
+    use.add("photographs", held_bytes(inputs.rows->given));
   }
   use.add("maps", held_bytes(maps));
   matcher.add_memory_use(use);
@@ -198,27 +226,17 @@ struct Matched {
 
 /// Matches, and warns of images and ranges that do not suit each other. `asked`: the options before
 /// the range was found.
-void compute_maps(const MatchJob& job, const Settings& settings, const MatchInputs& inputs,
-                  const MatchOptions& asked, const StereoMatcher& matcher,
-                  std::span<const VolumeRequest> volumes, Execution& execution, RunReport& report,
-                  Matched& matched) {
-  const auto compute = [&] {
-    report.timed_compute([&] {
-      if (inputs.rectifier) {
-        match_unrectified(job, *inputs.rectifier, inputs.images, execution, matched.maps,
-                          matched.report);
-      } else {
-        match_images(job, matcher, inputs.images, volumes, matched.maps, matched.report);
-      }
-    });
-  };
-  if (job.check_rectification && !job.match.disparities_y && !inputs.rectifier) {
-    warn_unless_rectified_beside(compute, settings, job.common, expects_negative_disparities(asked),
-                                 job.vertical ? "columns" : "rows", inputs.left(), inputs.right(),
-                                 execution, report);
-  } else {
-    compute();
-  }
+void compute_maps(const MatchJob& job, const MatchInputs& inputs, const MatchOptions& asked,
+                  const StereoMatcher& matcher, std::span<const VolumeRequest> volumes,
+                  Execution& execution, RunReport& report, Matched& matched) {
+  report.timed_compute([&] {
+    if (inputs.rectifier) {
+      match_unrectified(job, *inputs.rectifier, inputs.images, execution, matched.maps,
+                        matched.report);
+    } else {
+      match_images(job, matcher, inputs.images, volumes, matched.maps, matched.report);
+    }
+  });
   if (!job.has_several() && !inputs.rectifier) {
     warn_of_cut_range(job.common, inputs.left(), inputs.right(), matched.maps, job.match,
                       asked.disparities_auto, execution, report);
@@ -288,6 +306,7 @@ int run_match(MatchJob& job, const Settings& settings) {
   RunReport& report = work.report;
 
   MatchInputs inputs(job, work.execution, report);
+  inputs.correct(job, settings, work.execution, report);
   const MatchOptions asked = job.match;
   choose_disparities(settings, job.common, inputs.left(), inputs.right(), job.match, work.execution,
                      report);
@@ -309,14 +328,14 @@ int run_match(MatchJob& job, const Settings& settings) {
   const StereoMatcher matcher(options, execution);
   Matched matched;
   SpaceOutputs space(job);
-  compute_maps(job, settings, inputs, asked, matcher, space.requests(job), execution, report,
-               matched);
+  compute_maps(job, inputs, asked, matcher, space.requests(job), execution, report, matched);
   if (space.posterior) {
     space.posterior->erase(inputs.images[job.has_several() ? 0 : index_of(side_of(job))].left_out,
                            execution);
   }
   tell_match(matched.report, job.common, report);
-  report.set_memory(memory_use(inputs.images, matched.maps, matcher, execution));
+  report.set_memory(memory_use(inputs, matched.maps, matcher, execution));
+  inputs.bring_back(matched.maps, execution);
   if (job.vertical) {
     transpose(matched.maps);
     transpose(matched.cyclopean);

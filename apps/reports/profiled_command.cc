@@ -84,8 +84,7 @@ ProfiledChoices ProfiledCommand::choices() const {
   choices.preset = has_several ? std::nullopt : match.preset_in_force();
   choices.estimates_range = match.disparities_auto;
   choices.candidates = match.disparities_auto ? 0 : match.disparities.count();
-  choices.checks_rows =
-      match_job != nullptr ? match_job->check_rectification : run_job->check_rectification;
+  choices.checks_rows = match_job != nullptr ? match_job->rows.check : run_job->check_rectification;
   choices.has_map_for_check_only =
       !match.raw && refinement.cross_check && !needs_both && !has_several;
   choices.can_check_coarse_map =

@@ -203,8 +203,11 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   }
   prepare_pairs(job, calibration, job.sequence.is_metric(), first, execution, session);
   if (job.check_rectification && job.unrectified.empty()) {
-    warn_unless_rectified(settings, job.common, expects_negative_disparities(job.sequence.match),
-                          first.left, first.right, report);
+    correct_rows({.settings = settings,
+                  .common = job.common,
+                  .mode = RowMode::kAsIs,
+                  .expects_negative = expects_negative_disparities(job.sequence.match)},
+                 first.left, first.right, execution, report);
   }
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   const auto find_range = [&] {

@@ -122,7 +122,9 @@ void add_run_settings(Settings& settings, RunJob& job) {
   add_input_settings(settings, job);
   add_unrectified_settings(settings, job.unrectified, job.rectified_pixels);
   add_kitti_cameras_setting(settings, job.kitti_cameras);
-  add_rectification_check_setting(settings, job.check_rectification);
+  add_rectification_check_setting(
+      settings, job.check_rectification,
+      "Do not check, and warn, whether rows correspond and whether left and right are exchanged");
   add_output_settings(settings, job);
   add_metric_settings(settings, job);
   add_steadiness_settings(settings, job);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/comfort/image_order.h"
-#include "engine/rectification/vertical_error.h"
+#include "engine/rectification/row_check.h"
 
 namespace vantage {
 namespace {

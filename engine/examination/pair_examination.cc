@@ -11,6 +11,7 @@
 #include "engine/image/content_hash.h"
 #include "engine/image/side.h"
 #include "engine/matching/pair_matcher.h"
+#include "engine/rectification/row_check.h"
 #include "engine/seconds_since.h"
 
 namespace vantage {
@@ -75,7 +76,7 @@ PairExamination examine_pair(const Photograph& left, const Photograph& right,
     examination.problems.emplace_back("left and right are the same picture");
   }
   examine_images(left, right, execution, examination);
-  examination.rows = check_rectification(left, right);
+  examination.rows = check_rectification(left, right, &execution);
   if (!failure.empty()) {
     examination.problems.push_back(failure);
   } else if (examination.shares.matched < kMinMatchedShare) {

@@ -87,10 +87,9 @@ RowFit fit_terms(const RowTerms& all, const Eigen::ArrayXd& offsets, int count,
   }
   const auto on_grid = grid.leftCols(count);
   const Eigen::MatrixXd spread = normal.ldlt().solve(on_grid.transpose());
-  fit.deviation_px = fit.scale_px * std::sqrt((on_grid.transpose().cwiseProduct(spread))
-                                                  .colwise()
-                                                  .sum()
-                                                  .maxCoeff());
+  fit.deviation_px =
+      fit.scale_px *
+      std::sqrt((on_grid.transpose().cwiseProduct(spread)).colwise().sum().maxCoeff());
   return fit;
 }
 
@@ -122,13 +121,13 @@ RowField::Terms RowField::terms_at(double x, double y, int width_px, int height_
   return {1, u, v, u * v, v * v, v * (u * u + v * v)};
 }
 
-double RowField::at(double x, double y) const {
-  const Terms terms = terms_at(x, y, width_, height_);
-  double sum = 0;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    sum += coefficients_[i] * terms[i];
-  }
-  return sum;
+RowField::Row RowField::along_row(double y) const {
+  const double half = width_ / 2.0;
+  const double v = (y - (height_ - 1) / 2.0) / half;
+  const auto& [one, u, down, both, down2, radial] = coefficients_;
+  return {.centre_x = (width_ - 1) / 2.0,
+          .coefficients_px = {one + v * (down + v * (down2 + v * radial)), (u + v * both) / half,
+                              v * radial / (half * half)}};
 }
 
 double RowField::row_of_left(double x, double y) const {
@@ -187,8 +186,7 @@ std::optional<RowEstimate> fit_rows(const std::vector<PointMatch>& points, int w
                      .deviation_px = best.deviation_px};
   const Eigen::ArrayXd distances =
       (offsets - (terms.leftCols(result.terms) * best.coefficients).array()).abs();
-  result.inliers =
-      static_cast<int>((distances <= kInlierDeviations * best.scale_px).count());
+  result.inliers = static_cast<int>((distances <= kInlierDeviations * best.scale_px).count());
   RowField::Terms coefficients = {};
   std::copy(best.coefficients.begin(), best.coefficients.end(), coefficients.begin());
   result.field = RowField(width_px, height_px, coefficients);

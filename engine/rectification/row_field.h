@@ -27,7 +27,18 @@ class RowField {
   [[nodiscard]] const Terms& coefficients_px() const { return coefficients_; }
 
   /// v at a position, in pixels. Positive where the right image is lower.
-  [[nodiscard]] double at(double x, double y) const;
+  [[nodiscard]] double at(double x, double y) const { return along_row(y).at(x); }
+  /// v along a row is a polynomial of second degree.
+  struct Row {
+    double centre_x = 0;
+    std::array<double, 3> coefficients_px = {};
+
+    [[nodiscard]] double at(double x) const {
+      const double u = x - centre_x;
+      return coefficients_px[0] + u * (coefficients_px[1] + u * coefficients_px[2]);
+    }
+  };
+  [[nodiscard]] Row along_row(double y) const;
   /// The row of `left` that row y of `right` corresponds to: y' with y' + v(x, y') = y.
   [[nodiscard]] double row_of_left(double x, double y) const;
   /// Largest |v| in the image.

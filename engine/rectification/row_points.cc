@@ -35,7 +35,7 @@ constexpr float kMinReducedCorrelation = 0.4F;
 constexpr float kClearMargin = 0.15F;
 constexpr float kMinMargin = 0.05F;
 constexpr float kMinCorrelation = 0.5F;
-constexpr float kMaxDeviation_px = 0.33F;
+constexpr float kMaxPointDeviation_px = 0.33F;
 
 using Row = std::vector<float>;
 
@@ -123,11 +123,11 @@ Row running_sums(const Row& values, std::size_t count) {
   return sums;
 }
 
-/// Smaller eigenvalue of the structure tensor of the patches around the centre row; element x is of
-/// the patch from column x on.
+/// Smaller eigenvalue of the structure tensor of the patches around the centre row, of every second
+/// row; element x is of the patch from column x on.
 Row texture_of(const Strip& strip, std::size_t width) {
   std::array<Row, 3> products = {Row(width), Row(width), Row(width)};
-  for (int k = -kRadius_px; k <= kRadius_px; ++k) {
+  for (int k = -kRadius_px; k <= kRadius_px; k += 2) {
     const float* const row = strip.row(k);
     const float* const above = strip.row(k - 1);
     const float* const below = strip.row(k + 1);
@@ -145,15 +145,15 @@ Row texture_of(const Strip& strip, std::size_t width) {
   Row smaller(xx.size());
   for (std::size_t x = 0; x < xx.size(); ++x) {
     const float half_difference = (xx[x] - yy[x]) / 2;
-    smaller[x] = (xx[x] + yy[x]) / 2 -
-                 std::sqrt(half_difference * half_difference + xy[x] * xy[x]);
+    smaller[x] = (xx[x] + yy[x]) / 2 - std::sqrt(half_difference * half_difference + xy[x] * xy[x]);
   }
   return smaller;
 }
 
 /// Columns with the most texture, one of each cell that has any.
 std::vector<int> textured_columns(const Strip& strip, int width) {
-  constexpr float kMin = kMinTexture * 4 * kSide_px * kSide_px;  // differences are of two pixels
+  // Differences are of two pixels, in every second row.
+  constexpr float kMin = kMinTexture * 4 * kSide_px * (kRadius_px + 1);
   const Row texture = texture_of(strip, static_cast<std::size_t>(width));
   const auto count = static_cast<int>(texture.size());
   std::vector<int> columns;
@@ -281,7 +281,8 @@ class FullSearch {
     const auto down = static_cast<std::ptrdiff_t>(columns_);
     const float xx = centre[-1] - 2 * centre[0] + centre[1];
     const float yy = centre[-down] - 2 * centre[0] + centre[down];
-    const float xy = (centre[down + 1] - centre[down - 1] - centre[-down + 1] + centre[-down - 1]) / 4;
+    const float xy =
+        (centre[down + 1] - centre[down - 1] - centre[-down + 1] + centre[-down - 1]) / 4;
     const float dx = (centre[1] - centre[-1]) / 2;
     const float dy = (centre[down] - centre[-down]) / 2;
     const float determinant = xx * yy - xy * xy;
@@ -294,7 +295,7 @@ class FullSearch {
     const float curvature = determinant / -xx;  // along the ridge
     const float unexplained = (1 - centre[0] * centre[0]) / (centre[0] * kSide_px * kSide_px);
     if (std::abs(right) > 1 || std::abs(below) > 1 ||
-        unexplained > kMaxDeviation_px * kMaxDeviation_px * curvature) {
+        unexplained > kMaxPointDeviation_px * kMaxPointDeviation_px * curvature) {
       return std::nullopt;
     }
     return Peak{centre[0], x + right, row_offset + below};
@@ -379,7 +380,7 @@ std::vector<PointMatch> points_of_strip(const Photograph& left, const Photograph
 }  // namespace
 
 std::vector<PointMatch> find_row_points(const Photograph& left, const Photograph& right,
-                                        Execution& execution) {
+                                        Execution* execution) {
   const int width = left.width();
   const int height = left.height();
   if (width != right.width() || height != right.height() || std::min(width, height) < 32) {
@@ -392,10 +393,17 @@ std::vector<PointMatch> find_row_points(const Photograph& left, const Photograph
   const int span = height - kStripRows;
   const int strips = std::min(kStrips, span / kSide_px + 1);
   std::vector<std::vector<PointMatch>> found(static_cast<std::size_t>(strips));
-  execution.executor().parallel_for(strips, [&](int strip) {
+  const auto look = [&](int strip) {
     const int y = kCentreRow + (strips == 1 ? span / 2 : strip * span / (strips - 1));
     found[static_cast<std::size_t>(strip)] = points_of_strip(left, right, y, factor);
-  });
+  };
+  if (execution != nullptr) {
+    execution->executor().parallel_for(strips, look);
+  } else {
+    for (int strip = 0; strip < strips; ++strip) {
+      look(strip);
+    }
+  }
   std::vector<PointMatch> points;
   for (const std::vector<PointMatch>& of_strip : found) {
     points.insert(points.end(), of_strip.begin(), of_strip.end());

@@ -16,15 +16,6 @@ constexpr double kTolerance_px = 1;
 constexpr double kErrorDeviations = 4;
 /// Points at infinity have disparities around 0.
 constexpr double kNegative_px = -0.5;
-// Of the first look at a pair that should be rectified, which is good to 0.2 px, and of the second.
-constexpr int kQuickFeatures = 300;
-constexpr int kQuickSide_px = 400;
-constexpr int kSureFeatures = 1000;
-constexpr int kSureSide_px = 640;
-// A first look with these values is not followed by the second.
-constexpr int kClearInliers = 25;
-constexpr double kClearError_px = 0.3;
-constexpr double kClearNegativeShare = 0.7;
 constexpr int kTerms = 7;
 using Terms = Eigen::Matrix<double, Eigen::Dynamic, kTerms>;
 
@@ -150,20 +141,6 @@ std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& match
       static_cast<double>(std::count_if(disparities.begin(), disparities.end(), is_negative)) /
       count;
   return result;
-}
-
-std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right) {
-  const auto look = [&](int max_features, int largest_side_px) {
-    return vertical_error(match_features(left, right,
-                                         {.kind = FeatureKind::kOrb,
-                                          .max_features = max_features,
-                                          .largest_side_px = largest_side_px}));
-  };
-  const std::optional<VerticalError> quick = look(kQuickFeatures, kQuickSide_px);
-  const bool is_clear = quick && quick->inliers >= kClearInliers &&
-                        quick->systematic_px <= kClearError_px &&
-                        quick->negative_share <= kClearNegativeShare;
-  return is_clear ? quick : look(kSureFeatures, kSureSide_px);
 }
 
 double more_bad_percent(double rows_off_px) {

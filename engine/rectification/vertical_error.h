@@ -40,11 +40,6 @@ inline constexpr int kMinMatches = 20;
 /// rule: may be called concurrently.
 std::optional<VerticalError> vertical_error(const std::vector<PointMatch>& matches);
 
-/// Quick check of pairs that should be rectified: a few points of images reduced to 400 pixels per
-/// side if these clearly agree, else more points of images of at most 640 pixels, in a tenth of the
-/// time of vertical_error() of all matches. None if there are too few.
-std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right);
-
 // What it costs that rows do not correspond. Thread rule: pure.
 
 /// The additional percentage of pixels that are wrong by more than a pixel with this row error,

@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/rectification/feature_matches.h"
 #include "engine/rectification/relative_pose.h"
+#include "engine/rectification/row_check.h"
 
 namespace vantage {
 namespace {
@@ -62,7 +63,7 @@ std::optional<VerticalError> edge_error(const Photograph& first, const Photograp
                                         double limit_px) {
   std::optional<VerticalError> error = check_rectification(first, second);
   if (error && error->systematic_px > limit_px) {
-    // The check looks at reduced images, where a pixel of a large image is little.
+    // Features are of reduced images, where a pixel of a large image is little.
     const auto sure = vertical_error(match_features(first, second));
     error = sure ? sure : error;
   }

@@ -3,6 +3,7 @@
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/rectification/rectifier.h"
+#include "engine/rectification/row_check.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/unrectified_pair.h"
@@ -111,23 +112,6 @@ TEST(VerticalError, IsFoundWhereItChangesOverTheImage) {
   EXPECT_NEAR(found->mean_px, 0, 0.1);
   // Of points that are evenly spread over the width.
   EXPECT_NEAR(found->systematic_px, kTurn * 320 / std::sqrt(12), 0.1);
-}
-
-TEST(VerticalError, PairsThatClearlyAgreeTakeAQuickLook) {
-  const auto& [left, right] = scene_images();
-  const auto sure = [&](const Photograph& shifted) {
-    return vertical_error(match_features(
-        left, shifted, {.kind = FeatureKind::kOrb, .max_features = 1000, .largest_side_px = 640}));
-  };
-  const auto found = check_rectification(left, right);
-  ASSERT_TRUE(found && sure(right));
-  EXPECT_LT(found->matches, sure(right)->matches / 2);
-  Eigen::Matrix3d down = Eigen::Matrix3d::Identity();
-  down(1, 2) = 0.4;
-  const Photograph shifted = warped(right, down);
-  const auto unsure = check_rectification(left, shifted);
-  ASSERT_TRUE(unsure && sure(shifted));
-  EXPECT_EQ(unsure->matches, sure(shifted)->matches);
 }
 
 TEST(VerticalError, TellsExchangedImages) {

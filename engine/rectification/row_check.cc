@@ -1,0 +1,37 @@
+#include "engine/rectification/row_check.h"
+
+#include "engine/rectification/row_points.h"
+
+namespace vantage {
+namespace {
+
+/// Of the features that count where rows are not nearly rectified.
+constexpr int kFeatures = 1000;
+constexpr int kFeatureSide_px = 640;
+/// Features of repeated texture are mistaken for each other.
+constexpr double kMinFeatureShare = 0.5;
+
+}  // namespace
+
+RowCheck check_rows(const Photograph& left, const Photograph& right, Execution* execution) {
+  const std::vector<PointMatch> points = find_row_points(left, right, execution);
+  RowCheck check{.rows = fit_rows(points, left.width(), left.height()), .error = std::nullopt};
+  if (check.rows) {
+    check.error = vertical_error(points);
+    return check;
+  }
+  check.error = vertical_error(match_features(
+      left, right,
+      {.kind = FeatureKind::kOrb, .max_features = kFeatures, .largest_side_px = kFeatureSide_px}));
+  if (check.error && check.error->inliers < kMinFeatureShare * check.error->matches) {
+    check.error.reset();
+  }
+  return check;
+}
+
+std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right,
+                                                 Execution* execution) {
+  return check_rows(left, right, execution).error;
+}
+
+}  // namespace vantage
