@@ -315,7 +315,7 @@ void bind_match_result(py::module_& module) {
           "float: share of the pixels that were filled from their neighbours.")
       .def_property_readonly(
           "reliable_share", [](const MatchResult& self) { return self.shares().reliable; },
-          "float: expected share of disparities within 1 px of the true ones; below 0.4 the match "
+          "float: expected share of disparities within 1 px of the true ones; below 0.45 the match "
           "warns.")
       .def("__repr__", &MatchResult::text)
       .def("preview", &MatchResult::preview,

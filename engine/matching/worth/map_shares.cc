@@ -13,7 +13,7 @@ namespace {
 
 /// Between the maps of scenes with ground truth and those of pairs that show nothing in common
 /// (perf/log/2026-11-27-confidence.md).
-constexpr double kDoubtfulShare = 0.4;
+constexpr double kDoubtfulShare = 0.45;
 
 }  // namespace
 
