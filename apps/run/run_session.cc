@@ -11,6 +11,7 @@
 #include "apps/inputs/rectification_check.h"
 #include "apps/process/interrupt.h"
 #include "apps/process/outputs.h"
+#include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "apps/reports/remarks.h"
 #include "apps/run/resumed_run.h"
@@ -215,9 +216,11 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
     if (const std::optional<DisparityRange> known = range_of_run_to_resume(job)) {
       return known;
     }
+    Progress progress(settings.command(), "pairs searched for the range", job.shown_progress());
     const auto found =
         find_sequence_range(*session.pairs, rectify, execution,
-                            job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero);
+                            job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero,
+                            [&](int done, int total) { progress.update(done, total, 0); });
     if (session.pairs->is_stream()) {
       require_no_interrupt();
     }

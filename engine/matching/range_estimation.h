@@ -22,7 +22,7 @@ enum class Infinity {
 /// noise, unrelated images.
 ///
 /// Images of 512 to 1280 pixels width are reduced to a quarter, larger ones to a width of 320, so
-/// that the time is a few per cent of the matching time; surfaces of less than a window, 5 × 5
+/// that the time is a few per cent of the matching time; surfaces of less than a window, 3 × 7
 /// reduced pixels, can be missed.
 ///
 /// `vertical`: range of y_left − y_right of an unrectified pair.

@@ -177,6 +177,14 @@ TEST(DisparityRange, SkyOfNoiseDoesNotCount) {
   }
 }
 
+TEST(DisparityRange, BarsOfEqualDistanceDoNotCountSeveralTimes) {
+  const DisparityRange range = range_of_changed(
+      1, [](int x, int) { return x % 40 < 8 ? std::optional<int>(40) : std::nullopt; });
+  EXPECT_LE(range.min, 8) << range.min << ':' << range.max;
+  EXPECT_GE(range.max, 22);
+  EXPECT_LE(range.count(), 1.6 * 14 + 16) << range.min << ':' << range.max;
+}
+
 TEST(DisparityRange, RepeatedTextureIsNoEvidence) {
   Photograph views[2];
   for (unsigned view = 0; view < 2; ++view) {

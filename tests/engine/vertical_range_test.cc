@@ -74,7 +74,7 @@ TEST(VerticalRange, HoldsTheBaselineOfCamerasOneAboveTheOther) {
   ASSERT_TRUE(across);
   EXPECT_LE(across->min, 0);
   EXPECT_GE(across->max, 0);
-  EXPECT_LE(across->count(), 10) << across->min << ':' << across->max;
+  EXPECT_LE(across->count(), 12) << across->min << ':' << across->max;
 }
 
 TEST(VerticalRange, OfPhotographsIsNarrow) {

@@ -5,13 +5,19 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 namespace vantage {
 namespace {
 
-constexpr int kRadius = 2;      ///< of the windows compared
-constexpr int kMeanRadius = 3;  ///< of the local means
+// Windows are narrow, so that they fit between bars and on surfaces seen from the side.
+constexpr int kRadius = 1;      ///< of the windows compared, columns
+constexpr int kMeanRadius = 3;  ///< of the local means, columns
+constexpr int kRowRadius = 3;   ///< of both
+/// Columns at the sides whose means lack pixels: they resemble only what is at the same place.
+constexpr int kBorder = kRadius + kMeanRadius;
 /// Variance, in grey levels², that is added to that of each image: of rounding to whole levels.
 constexpr float kRounding = 0.005F;
 /// Texture has more than three times the variance of the noise then.
@@ -23,28 +29,19 @@ constexpr int kTolerance = 2;   ///< between neighbours, and between both images
 constexpr float kInexactness = 1.02F;
 constexpr float kMaxAmbiguity = 0.6F;
 
-/// Σ over (2·radius + 1)² pixels around each, of those inside the image.
+/// Σ over windows of 2·radius + 1 columns, of the pixels inside the image.
 Image<float> window_sums(const Image<float>& image, int radius, Execution& execution) {
   const int width = image.width();
-  const int height = image.height();
-  Image<float> result(width, height);
-  execution.for_each_band(height, [&](int first_row, int end_row) {
+  Image<float> result(width, image.height());
+  execution.for_each_row(image.height(), [&](int y) {
     std::vector<float> columns(static_cast<std::size_t>(width + 2 * radius));
-    for (int y = first_row; y < end_row; ++y) {
-      std::fill(columns.begin(), columns.end(), 0.0F);
-      float* const sums = columns.data() + radius;
-      for (int row = std::max(0, y - radius); row <= std::min(height - 1, y + radius); ++row) {
-        for (int x = 0; x < width; ++x) {
-          sums[x] += image.row(row)[x];
-        }
-      }
-      for (int x = 0; x < width; ++x) {
-        float sum = 0;
-        for (int i = -radius; i <= radius; ++i) {
-          sum += sums[x + i];
-        }
-        result.row(y)[x] = sum;
-      }
+    float* const sums = columns.data() + radius;
+    const int last_row = std::min(image.height() - 1, y + kRowRadius);
+    for (int row = std::max(0, y - kRowRadius); row <= last_row; ++row) {
+      std::transform(sums, sums + width, image.row(row), sums, std::plus<>());
+    }
+    for (int x = 0; x < width; ++x) {
+      result.row(y)[x] = std::accumulate(sums + x - radius, sums + x + radius + 1, 0.0F);
     }
   });
   return result;
@@ -59,26 +56,24 @@ struct Detail {
 Detail detail_of(const Image<float>& image, Execution& execution) {
   const int width = image.width();
   const int height = image.height();
+  Image<float> ones(width, height);
+  ones.fill(1);
+  const Image<float> pixels = window_sums(ones, kMeanRadius, execution);
   Detail detail{window_sums(image, kMeanRadius, execution), {}};
   Image<float> squares(width, height);
-  const auto inside = [](int at, int size) {
-    return std::min(size - 1, at + kMeanRadius) - std::max(0, at - kMeanRadius) + 1;
-  };
   execution.for_each_row(height, [&](int y) {
     float* const values = detail.values.row(y);
     for (int x = 0; x < width; ++x) {
-      values[x] =
-          image.row(y)[x] - values[x] / static_cast<float>(inside(x, width) * inside(y, height));
+      values[x] = image.row(y)[x] - values[x] / pixels.row(y)[x];
       squares.row(y)[x] = values[x] * values[x];
     }
   });
-  constexpr float kPixels = (2 * kRadius + 1) * (2 * kRadius + 1);
-  const float rounding = kRounding * kPixels;
+  constexpr float kPixels = (2 * kRadius + 1) * (2 * kRowRadius + 1);
   detail.scale = window_sums(squares, kRadius, execution);
   execution.for_each_row(height, [&](int y) {
     float* const scale = detail.scale.row(y);
     std::transform(scale, scale + width, scale,
-                   [&](float energy) { return 1 / std::sqrt(energy + rounding); });
+                   [](float energy) { return 1 / std::sqrt(energy + kRounding * kPixels); });
   });
   return detail;
 }
@@ -93,123 +88,80 @@ struct Winners {
   Image<float> ambiguity;  ///< (c − r₁)/(c − r₂); 1 where r₁ is too small
 };
 
-/// The search of one row.
-class RowSearch {
- public:
-  RowSearch(const Detail& reference, const Details& other, DisparityRange columns,
-            DisparityRange rows)
-      : reference_(reference),
-        other_(other),
-        half_columns_{2 * columns.min, 2 * columns.max},
-        rows_(rows) {
-    const auto width = static_cast<std::size_t>(reference.values.width());
-    sums_.resize(width + 2 * kRadius);
-    for (auto* buffer : {&best_, &second_, &before_, &row_}) {
-      buffer->resize(width);
-    }
-    for (auto& buffer : recent_) {
-      buffer.resize(width);
+/// Correlations of row y with partners half_d / 2 columns and dy rows away, of windows inside both
+/// images, where they are better than `best`; then `row` becomes dy.
+void correlate(const Detail& reference, const Details& others, int y, int half_d, int dy,
+               float* best, float* row, std::vector<float>& columns) {
+  const int width = reference.values.width();
+  const int height = reference.values.height();
+  const int is_between = half_d & 1;
+  const int d = (half_d + is_between) / 2;
+  const Detail& other = others[static_cast<std::size_t>(is_between)];
+  const int begin = kBorder + std::max(0, d);
+  const int end = std::min(width, width + d) - kBorder;
+  if (y - dy < 0 || y - dy >= height || begin >= end) {
+    return;
+  }
+  std::fill(columns.begin(), columns.end(), 0.0F);
+  float* const sums = columns.data();
+  const int last_row = std::min({height - 1, height - 1 + dy, y + kRowRadius});
+  for (int from = std::max({0, dy, y - kRowRadius}); from <= last_row; ++from) {
+    const float* const values = reference.values.row(from);
+    const float* const partners = other.values.row(from - dy) - d;
+    for (int x = begin - kRadius; x < end + kRadius; ++x) {
+      sums[x] += values[x] * partners[x];
     }
   }
-
-  void run(int y, Winners& winners) {
-    const int width = reference_.values.width();
-    for (auto* buffer : {&best_, &second_, &before_}) {
-      std::fill(buffer->begin(), buffer->end(), -1.0F);
-    }
-    for (auto& buffer : recent_) {
-      std::fill(buffer.begin(), buffer.end(), -1.0F);
-    }
-    float* const offset = winners.offset.row(y);
-    float* const row = winners.row.row(y);
-    std::fill_n(offset, width, static_cast<float>(half_columns_.min));
-    std::fill_n(row, width, 0.0F);
-    for (int d = half_columns_.min; d <= half_columns_.max; ++d) {
-      std::vector<float>& correlation =
-          recent_[static_cast<std::size_t>(d - half_columns_.min) % recent_.size()];
-      // What is forgotten here is too far away to be of the same peak as d.
-      std::transform(before_.begin(), before_.end(), correlation.begin(), before_.begin(),
-                     [](float a, float b) { return std::max(a, b); });
-      std::fill(correlation.begin(), correlation.end(), -1.0F);
-      for (int dy = rows_.min; dy <= rows_.max; ++dy) {
-        correlate(y, d, dy, correlation);
-      }
-      for (int x = 0; x < width; ++x) {
-        const auto i = static_cast<std::size_t>(x);
-        const float r = correlation[i];
-        const bool is_better = r > best_[i];
-        const bool is_apart = static_cast<float>(d) - offset[x] > kPeakRadius;
-        second_[i] = is_better ? before_[i] : is_apart ? std::max(second_[i], r) : second_[i];
-        best_[i] = is_better ? r : best_[i];
-        offset[x] = is_better ? static_cast<float>(d) : offset[x];
-        row[x] = is_better ? row_[i] : row[x];
-      }
-    }
-    for (int x = 0; x < width; ++x) {
-      const auto i = static_cast<std::size_t>(x);
-      winners.ambiguity.row(y)[x] =
-          best_[i] < kMinCorrelation ? 1 : (kInexactness - best_[i]) / (kInexactness - second_[i]);
-    }
+  const float* const scale = reference.scale.row(y);
+  const float* const other_scale = other.scale.row(y - dy) - d;
+  for (int x = begin; x < end; ++x) {
+    const float r = (sums[x - 1] + sums[x] + sums[x + 1]) * scale[x] * other_scale[x];
+    row[x] = r > best[x] ? static_cast<float>(dy) : row[x];
+    best[x] = std::max(best[x], r);
   }
-
- private:
-  /// Of windows within both images: correlations with the partners half_d / 2 columns
-  /// and dy rows away, where they are better.
-  void correlate(int y, int half_d, int dy, std::vector<float>& correlation) {
-    const int is_between = half_d & 1;
-    const int d = (half_d + is_between) / 2;
-    const Detail& other = other_[static_cast<std::size_t>(is_between)];
-    const int width = reference_.values.width();
-    const int height = reference_.values.height();
-    const int begin = kRadius + std::max(0, d);
-    const int end = std::min(width, width + d) - kRadius;
-    if (y - dy < 0 || y - dy >= height || begin >= end) {
-      return;
-    }
-    float* const sums = sums_.data() + kRadius;
-    std::fill(sums_.begin(), sums_.end(), 0.0F);
-    const int first_row = std::max({0, dy, y - kRadius});
-    const int last_row = std::min({height - 1, height - 1 + dy, y + kRadius});
-    for (int row = first_row; row <= last_row; ++row) {
-      const float* const values = reference_.values.row(row);
-      const float* const others = other.values.row(row - dy) - d;
-      for (int x = begin - kRadius; x < end + kRadius; ++x) {
-        sums[x] += values[x] * others[x];
-      }
-    }
-    const float* const scale = reference_.scale.row(y);
-    const float* const other_scale = other.scale.row(y - dy) - d;
-    for (int x = begin; x < end; ++x) {
-      const float sum = sums[x - 2] + sums[x - 1] + sums[x] + sums[x + 1] + sums[x + 2];
-      const float r = sum * scale[x] * other_scale[x];
-      const auto i = static_cast<std::size_t>(x);
-      row_[i] = r > correlation[i] ? static_cast<float>(dy) : row_[i];
-      correlation[i] = std::max(correlation[i], r);
-    }
-  }
-
-  const Detail& reference_;
-  const Details& other_;
-  DisparityRange half_columns_;
-  DisparityRange rows_;
-  std::vector<float> sums_;
-  std::vector<float> best_;
-  std::vector<float> second_;
-  std::vector<float> before_;  ///< the best of all disparities more than kPeakRadius below
-  std::vector<float> row_;
-  std::array<std::vector<float>, kPeakRadius + 1> recent_;
-};
+}
 
 Winners search(const Detail& reference, const Details& other, DisparityRange columns,
                DisparityRange rows, Execution& execution) {
   const int width = reference.values.width();
   const int height = reference.values.height();
   Winners winners{{width, height}, {width, height}, {width, height}};
-  execution.for_each_band(height, [&](int first_row, int end_row) {
-    RowSearch row_search(reference, other, columns, rows);
-    for (int y = first_row; y < end_row; ++y) {
-      row_search.run(y, winners);
+  execution.for_each_row(height, [&](int y) {
+    const std::vector<float> none(static_cast<std::size_t>(width), -1.0F);
+    std::array<std::vector<float>, kPeakRadius + 1> recent;
+    recent.fill(none);
+    std::vector<float> best = none;
+    std::vector<float> second = none;
+    std::vector<float> before = none;  // the best of all disparities that are not recent
+    std::vector<float> partner_row = none;
+    std::vector<float> sums = none;
+    float* const offset = winners.offset.row(y);
+    float* const row = winners.row.row(y);
+    std::fill_n(offset, width, 2.0F * static_cast<float>(columns.min));
+    std::fill_n(row, width, 0.0F);
+    for (int half_d = 2 * columns.min; half_d <= 2 * columns.max; ++half_d) {
+      std::vector<float>& now =
+          recent[static_cast<std::size_t>(half_d - 2 * columns.min) % recent.size()];
+      std::transform(before.begin(), before.end(), now.begin(), before.begin(),
+                     [](float a, float b) { return std::max(a, b); });
+      now = none;
+      for (int dy = rows.min; dy <= rows.max; ++dy) {
+        correlate(reference, other, y, half_d, dy, now.data(), partner_row.data(), sums);
+      }
+      for (int x = 0; x < width; ++x) {
+        const auto i = static_cast<std::size_t>(x);
+        const bool is_better = now[i] > best[i];
+        const bool is_apart = static_cast<float>(half_d) - offset[x] > kPeakRadius;
+        second[i] = is_better ? before[i] : is_apart ? std::max(second[i], now[i]) : second[i];
+        best[i] = is_better ? now[i] : best[i];
+        offset[x] = is_better ? static_cast<float>(half_d) : offset[x];
+        row[x] = is_better ? partner_row[i] : row[x];
+      }
     }
+    std::transform(best.begin(), best.end(), second.begin(), winners.ambiguity.row(y),
+                   [](float r1, float r2) {
+                     return r1 < kMinCorrelation ? 1 : (kInexactness - r1) / (kInexactness - r2);
+                   });
   });
   return winners;
 }
@@ -218,9 +170,8 @@ DisparityRange negated(DisparityRange range) { return {-range.max, -range.min}; 
 
 /// Marks as ambiguous what the right image does not confirm.
 void check_against(const Winners& right, Winners& left) {
-  const int width = left.offset.width();
   for (int y = 0; y < left.offset.height(); ++y) {
-    for (int x = 0; x < width; ++x) {
+    for (int x = 0; x < left.offset.width(); ++x) {
       float& ambiguity = left.ambiguity.row(y)[x];
       if (ambiguity >= kMaxAmbiguity) {
         continue;
@@ -228,10 +179,9 @@ void check_against(const Winners& right, Winners& left) {
       const auto half_d = static_cast<int>(left.offset.row(y)[x]);
       const int partner = x - (half_d + (half_d & 1)) / 2;
       const int row = y - static_cast<int>(left.row.row(y)[x]);
-      ambiguity = std::max(ambiguity, right.ambiguity.row(row)[partner]);
-      if (std::abs(static_cast<int>(right.offset.row(row)[partner]) + half_d) > kTolerance) {
-        ambiguity = 1;
-      }
+      const bool agrees =
+          std::abs(static_cast<int>(right.offset.row(row)[partner]) + half_d) <= kTolerance;
+      ambiguity = agrees ? std::max(ambiguity, right.ambiguity.row(row)[partner]) : 1;
     }
   }
 }
@@ -240,37 +190,38 @@ void check_against(const Winners& right, Winners& left) {
 std::vector<MatchedRegion> regions_of(Winners winners) {
   const int width = winners.offset.width();
   const int height = winners.offset.height();
+  const auto is_match = [&](int x, int y) {
+    return x >= 0 && x < width && y >= 0 && y < height &&
+           winners.ambiguity.row(y)[x] < kMaxAmbiguity;
+  };
   std::vector<MatchedRegion> regions;
   std::vector<std::pair<int, int>> open;
+  const auto take = [&](int x, int y) {
+    float& ambiguity = winners.ambiguity.row(y)[x];
+    regions.back().support += 1 - static_cast<double>(ambiguity / kMaxAmbiguity);
+    regions.back().half_pixels.push_back(static_cast<int>(winners.offset.row(y)[x]));
+    ambiguity = 1;
+    open.emplace_back(x, y);
+  };
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      MatchedRegion region;
-      const auto take = [&](int px, int py) {
-        region.support += 1 - static_cast<double>(winners.ambiguity.row(py)[px] / kMaxAmbiguity);
-        region.half_pixels.push_back(static_cast<int>(winners.offset.row(py)[px]));
-        winners.ambiguity.row(py)[px] = 1;
-        open.emplace_back(px, py);
-      };
-      if (winners.ambiguity.row(y)[x] < kMaxAmbiguity) {
-        take(x, y);
+      if (!is_match(x, y)) {
+        continue;
       }
+      regions.emplace_back();
+      take(x, y);
       while (!open.empty()) {
         const auto [at, row] = open.back();
         open.pop_back();
-        const float d = winners.offset.row(row)[at];
+        const float offset = winners.offset.row(row)[at];
         for (const auto& [px, py] :
              {std::pair{at - 1, row}, {at + 1, row}, {at, row - 1}, {at, row + 1}}) {
-          if (px >= 0 && px < width && py >= 0 && py < height &&
-              winners.ambiguity.row(py)[px] < kMaxAmbiguity &&
-              std::abs(winners.offset.row(py)[px] - d) <= kTolerance) {
+          if (is_match(px, py) && std::abs(winners.offset.row(py)[px] - offset) <= kTolerance) {
             take(px, py);
           }
         }
       }
-      if (!region.half_pixels.empty()) {
-        std::sort(region.half_pixels.begin(), region.half_pixels.end());
-        regions.push_back(std::move(region));
-      }
+      std::sort(regions.back().half_pixels.begin(), regions.back().half_pixels.end());
     }
   }
   return regions;

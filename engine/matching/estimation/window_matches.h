@@ -24,7 +24,7 @@ struct MatchedRegion {
   double support = 0;
 };
 
-/// Matches of windows of 5 × 5 pixels that are evidence by themselves, without any assumption about
+/// Matches of windows of 3 × 7 pixels that are evidence by themselves, without any assumption about
 /// neighbours: they correlate by at least 0.75, so that contrast exceeds the noise, no other
 /// disparity is nearly as good (as with bars of equal distance), and both images agree. For small
 /// images, as of a range estimate.

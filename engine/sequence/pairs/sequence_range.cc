@@ -32,7 +32,8 @@ std::optional<DisparityRange> range_of_pair(PairSource& pairs, int index,
 }  // namespace
 
 std::optional<DisparityRange> find_sequence_range(PairSource& pairs, const PreparePair& prepare,
-                                                  Execution& execution, Infinity infinity) {
+                                                  Execution& execution, Infinity infinity,
+                                                  const std::function<void(int, int)>& progress) {
   const FrameRange all = pairs.repeatable_pairs();
   const int count = std::min(all.count(), kMaxPairs);
   std::optional<DisparityRange> together;
@@ -45,6 +46,9 @@ std::optional<DisparityRange> find_sequence_range(PairSource& pairs, const Prepa
       together = together ? DisparityRange{std::min(together->min, range->min),
                                            std::max(together->max, range->max)}
                           : *range;
+    }
+    if (progress) {
+      progress(i + 1, count);
     }
   }
   pairs.skip_to(all.first);
