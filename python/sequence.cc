@@ -86,6 +86,7 @@ void open(const std::optional<StereoCalibration>& calibration, OpenSequence& ope
   const bool is_metric = job.sequence.unrectified != UnrectifiedSearch::kOnPhotographs &&
                          knows_metres(job, calibration);
   prepare_pairs(job, calibration, is_metric, first, execution, session);
+  (void)find_rows(job, execution, session);
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   MatchOptions& match = job.sequence.match;
   use_ranges(session.columns, match);

@@ -131,6 +131,12 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
                                     .mode = pair.rows.mode,
                                     .expects_negative = expects_negative_disparities(pair.match)},
                                    result.left, result.right, execution, report);
+    if (rows && result.unrectified) {
+      UnrectifiedImages& read = *result.unrectified;
+      Photograph corrected;
+      correct_photograph(read.right, rows->field, read.rectifier, corrected, execution);
+      read.right = std::move(corrected);
+    }
     if (rows && pair.has_maps()) {
       bring_to_corrected_rows(rows->field, result.maps.right, execution);
     }

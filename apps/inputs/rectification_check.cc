@@ -15,8 +15,6 @@
 namespace vantage::apps {
 namespace {
 
-constexpr double kToldTurn_degrees = 0.005;
-
 RowCheck timed_check(const Photograph& left, const Photograph& right, Execution& execution,
                      RunReport& report) {
   const scheduler::Span span("check");
@@ -65,10 +63,8 @@ bool expects_negative_disparities(const MatchOptions& options) {
 }
 
 void add_row_settings(Settings& settings, RowSettings& rows) {
-  settings.choice<RowMode>(
-      "rows", rows.mode, {{"auto", RowMode::kAuto}, {"as-is", RowMode::kAsIs}},
-      "Rows that do not correspond. auto: where the pair itself shows a smooth offset of up to a "
-      "few pixels, the right image is resampled, and its maps are brought back to its pixels");
+  settings.choice<RowMode>("rows", rows.mode, {{"auto", RowMode::kAuto}, {"as-is", RowMode::kAsIs}},
+                           kRowsHelp);
   add_rectification_check_setting(
       settings, rows.check,
       "Do not look at the rows: correct nothing, and do not warn of pairs that are not rectified "
@@ -78,6 +74,7 @@ void add_row_settings(Settings& settings, RowSettings& rows) {
 void add_rectification_check_setting(Settings& settings, bool& wanted, const char* text) {
   Setting& setting = settings.add("no-rectification-check", "", text);
   setting.flag = true;
+  setting.changes_results = false;  // rows do
   setting.set = [&wanted](const SettingValue& value) { wanted = !to_truth(value); };
   setting.get = [&wanted] { return !wanted; };
 }
@@ -92,22 +89,6 @@ SettingValue row_values(const RowEstimate& rows, bool is_corrected) {
           {"corrected", is_corrected}};
 }
 
-std::string row_text(const RowEstimate& rows, std::string_view lines) {
-  const double offset_px = rows.field.offset_px();
-  const double turn = rows.field.turn_degrees();
-  const bool is_of_rows = lines == "rows";
-  std::string text = fmt::format("right image {:.2f} px {}", std::abs(offset_px),
-                                 offset_px >= 0 ? (is_of_rows ? "lower" : "to the right")
-                                                : (is_of_rows ? "higher" : "to the left"));
-  if (std::abs(turn) >= kToldTurn_degrees) {
-    text += fmt::format(", turned {:.2f} degrees", is_of_rows ? turn : -turn);
-  }
-  if (rows.terms > 3) {
-    text += fmt::format(", up to {:.1f} px at the border", rows.field.max_px());
-  }
-  return text;
-}
-
 std::optional<CorrectedRows> correct_rows(const RowTask& task, const Photograph& left,
                                           Photograph& right, Execution& execution,
                                           RunReport& report) {
@@ -116,11 +97,11 @@ std::optional<CorrectedRows> correct_rows(const RowTask& task, const Photograph&
   }
   const RowCheck check = timed_check(left, right, execution, report);
   const bool corrects = task.mode == RowMode::kAuto && check.pays();
-  if (check.rows) {
+  if (check.rows && !task.is_of_sequence) {
     report.add_result("rows", row_values(*check.rows, corrects));
   }
   tell_of(task, check, corrects, report);
-  if (!corrects) {
+  if (!corrects || task.is_of_sequence) {
     return std::nullopt;
   }
   if (!task.common.quiet) {

@@ -34,6 +34,7 @@ struct RowTask {
   RowMode mode = RowMode::kAuto;
   bool expects_negative = false;    ///< images are not exchanged where most disparities are
   std::string_view lines = "rows";  ///< or "columns" of a transposed pair
+  bool is_of_sequence = false;      ///< only warn: the sequence corrects all of its pairs alike
 };
 
 /// What a correction replaced.
@@ -54,7 +55,4 @@ std::optional<CorrectedRows> correct_rows(const RowTask& task, const Photograph&
 
 /// Of the report.
 SettingValue row_values(const RowEstimate& rows, bool is_corrected);
-/// "right image 1.3 px lower, turned 0.11 degrees".
-std::string row_text(const RowEstimate& rows, std::string_view lines);
-
 }  // namespace vantage::apps

@@ -49,6 +49,20 @@ RunPart part_of(const std::string& name) {
   return part;
 }
 
+constexpr const char* kRows = "rows";
+
+/// What the journal of the run to resume says; empty where there is none.
+std::optional<SettingValue> setting_to_resume(const RunJob& job, const char* name) {
+  const fs::path journal = SequenceLayout(job.output, job.sequence).journal_folder();
+  if (!job.resume || job.force || !RunJournal::is_present(journal)) {
+    return std::nullopt;
+  }
+  const SettingValue settings =
+      parse_json(RunJournal::read_identity(journal).settings, (journal / "run.json").string());
+  const auto value = settings.find(name);
+  return value == settings.end() ? std::nullopt : std::optional(*value);
+}
+
 }  // namespace
 
 std::string sources_of(const RunJob& job, const Settings& settings) {
@@ -113,16 +127,17 @@ void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job) {
 }
 
 std::optional<DisparityRange> range_of_run_to_resume(const RunJob& job) {
-  const fs::path journal = SequenceLayout(job.output, job.sequence).journal_folder();
-  if (!job.resume || job.force || !RunJournal::is_present(journal)) {
-    return std::nullopt;
+  const std::optional<SettingValue> range = setting_to_resume(job, "disparities");
+  return range ? std::optional(to_disparity_range(*range, "MIN:MAX in the journal")) : std::nullopt;
+}
+
+void take_up_rows(RunJob& job) {
+  const std::optional<SettingValue> rows = setting_to_resume(job, kRows);
+  if (job.rows == RowMode::kAuto && job.sequence.rows.keys.empty() && rows) {
+    Settings settings("run", "");
+    add_sequence_rows_setting(settings, job);
+    settings.set_values({{kRows, *rows}});
   }
-  const SettingValue settings =
-      parse_json(RunJournal::read_identity(journal).settings, (journal / "run.json").string());
-  const auto range = settings.find("disparities");
-  return range == settings.end()
-             ? std::nullopt
-             : std::optional(to_disparity_range(*range, "MIN:MAX in " + journal.string()));
 }
 
 }  // namespace vantage::apps

@@ -36,4 +36,7 @@ void take_up_run(const Arguments& arguments, Settings& settings, RunJob& job);
 /// Empty if `job` does not resume a run.
 std::optional<DisparityRange> range_of_run_to_resume(const RunJob& job);
 
+/// Gives `job` the rows that were found when the run that it resumes began, if it resumes one.
+void take_up_rows(RunJob& job);
+
 }  // namespace vantage::apps

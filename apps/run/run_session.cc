@@ -149,6 +149,46 @@ std::string counted_frames(const RunJob& job, int frame_count) {
                                                          job.sequence.baselines.size() + 1);
 }
 
+/// Warns of the first pair, finds out how rows are corrected, and tells.
+void choose_rows(RunJob& job, const Settings& settings, FramePair& first, Execution& execution,
+                 RunSession& session, RunReport& report) {
+  take_up_rows(job);
+  if (!job.check_rectification) {
+    job.rows = RowMode::kAsIs;
+  } else if (job.unrectified.empty()) {
+    correct_rows({.settings = settings,
+                  .common = job.common,
+                  .mode = job.sequence.baselines.empty() ? job.rows : RowMode::kAsIs,
+                  .expects_negative = expects_negative_disparities(job.sequence.match),
+                  .is_of_sequence = true},
+                 first.left, first.right, execution, report);
+  }
+  const auto found =
+      report.timed_compute("rows", [&] { return find_rows(job, execution, session); });
+  if (session.pairs->is_stream()) {
+    require_no_interrupt();
+  }
+  const std::vector<RowTrack::Key>& keys = job.sequence.rows.keys;
+  if (found && found->rows) {
+    report.add_result("rows", row_values(*found->rows, !keys.empty()));
+  }
+  if (keys.empty() || job.common.quiet) {
+    return;
+  }
+  const RowField& last = keys.back().field;
+  const std::string text =
+      found && found->rows
+          ? fmt::format("{}; corrected, points of {} pairs agree to {:.2f} px",
+                        row_text(*found->rows), found->pairs, found->rows->residual_px)
+      : keys.size() > 1
+          ? fmt::format(
+                "right image from {:.2f} to {:.2f} px lower; corrected, followed over {} "
+                "pairs",
+                keys.front().field.offset_px(), last.offset_px(), keys.size())
+          : fmt::format("right image {:.2f} px lower; corrected as before", last.offset_px());
+  tell("run: rows: {}\n", text);
+}
+
 }  // namespace
 
 std::string RunSession::part_name(const RunJob& job) {
@@ -203,13 +243,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
     calibration = job.rig.read(job.cameras_file(), job.kitti_cameras);
   }
   prepare_pairs(job, calibration, job.sequence.is_metric(), first, execution, session);
-  if (job.check_rectification && job.unrectified.empty()) {
-    correct_rows({.settings = settings,
-                  .common = job.common,
-                  .mode = RowMode::kAsIs,
-                  .expects_negative = expects_negative_disparities(job.sequence.match)},
-                 first.left, first.right, execution, report);
-  }
+  choose_rows(job, settings, first, execution, session, report);
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   const auto find_range = [&] {
     // Estimating the range of a video without an index decodes the whole video.

@@ -80,6 +80,9 @@ constexpr Rule kRunRules[] = {
     {kJob, "rectified-pixels", "unless unrectified", "no effect without --unrectified"},
     {kJob, "cross-check-level", "unrectified",
      "no effect with --unrectified: whole maps are compared"},
+    {kJob, "user rows = auto", "baselines",
+     "rows auto cannot be used with baselines: only pairs are corrected"},
+    {kJob, "rows", "unrectified", "no effect with --unrectified"},
     {kJob, "calibration", "unrectified",
      "--calibration and --unrectified are both given, expected one of them: both are of the "
      "cameras"},
@@ -170,6 +173,7 @@ constexpr Rule kRunRules[] = {
      "no effect with --unrectified: tuning is for rectified pairs"},
     {kRun, "no-rectification-check | already-rectified", "unrectified",
      "no effect with --unrectified"},
+    {kRun, "rows", "no-rectification-check", "no effect where rows are not looked at"},
     {kRun, "overwrite", "resume", "--overwrite and --resume are both given, expected one of them"},
     {kRun, "overwrite", "force", "--overwrite and --force are both given, expected one of them"},
     {kRun, "overwrite", "shard",

@@ -42,6 +42,19 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
   setting.get = [&views_x] { return fmt::format("{},{}", views_x[0], views_x[1]); };
 }
 
+RowTrack::Key to_row_key(const SettingValue& values) {
+  constexpr std::size_t kFirst = 3;
+  if (!values.is_array() || values.size() != kFirst + RowField::kMaxTerms) {
+    reject_value(values, "auto or as-is");
+  }
+  RowField::Terms terms = {};
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    terms[i] = to_number(values[kFirst + i]);
+  }
+  return {static_cast<int>(to_number(values[0])),
+          {static_cast<int>(to_number(values[1])), static_cast<int>(to_number(values[2])), terms}};
+}
+
 /// --frames A-B:N also says which frames are taken, for all parts of the run.
 void apply_step_of_frames(SequenceJob& job) {
   if (!job.step_of_frames) {
@@ -87,6 +100,35 @@ SettingValue output_names(const std::vector<SequenceOutput>& outputs) {
   return names;
 }
 
+void add_sequence_rows_setting(Settings& settings, SequenceJob& job) {
+  Setting& rows = settings.choice<RowMode>(
+      "rows", job.rows, {{"auto", RowMode::kAuto}, {"as-is", RowMode::kAsIs}}, kRowsHelp);
+  rows.set = [&job, set_mode = rows.set](const SettingValue& value) {
+    job.sequence.rows.keys.clear();
+    if (!value.is_array()) {
+      set_mode(value);
+      return;
+    }
+    for (const SettingValue& key : value) {
+      job.sequence.rows.keys.push_back(to_row_key(key));
+    }
+  };
+  rows.get = [&job, mode = rows.get]() -> SettingValue {
+    if (job.sequence.rows.keys.empty()) {
+      return mode();
+    }
+    SettingValue keys = SettingValue::array();
+    for (const RowTrack::Key& key : job.sequence.rows.keys) {
+      SettingValue values = {key.pair, key.field.width(), key.field.height()};
+      for (const double coefficient_px : key.field.coefficients_px()) {
+        values.push_back(coefficient_px);
+      }
+      keys.push_back(std::move(values));
+    }
+    return keys;
+  };
+}
+
 void add_input_settings(Settings& settings, SequenceJob& job) {
   settings.start_group("Input: one of --left with --right, --stereo, --pairs, --sequence");
   add_pair_source_settings(settings, job.input);
@@ -114,6 +156,7 @@ void add_input_settings(Settings& settings, SequenceJob& job) {
       .changes_results = false;  // the journal identifies inputs by their content
   add_kept_outline_setting(settings, job.rectification);
   add_scene_mask_settings(settings, job.input.masks, true);
+  add_sequence_rows_setting(settings, job);
 }
 
 void add_save_setting(Settings& settings, SequenceJob& job) {

@@ -10,6 +10,7 @@
 #include "engine/options/settings.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectified_pair.h"
+#include "engine/rectification/row_correction.h"
 #include "engine/sequence/options/sequence_options.h"
 #include "engine/sequence/pairs/pair_source.h"
 #include "engine/sequence/work_plan.h"
@@ -29,7 +30,8 @@ struct SequenceJob {
   bool rectified_pixels = false;
   std::optional<KittiCameras> kitti_cameras;  ///< of calibrations of KITTI
   RectificationOptions rectification;
-  RigScale rig;       ///< of depths
+  RowMode rows = RowMode::kAuto;  ///< kAuto: sequence.rows is found, unless it is known
+  RigScale rig;                   ///< of depths
   std::string poses;  ///< file of a trajectory; empty: points are in the frame of the camera
   SequenceOptions sequence;
   /// Empty: the disparity map, and the views if there are any.
@@ -53,6 +55,9 @@ struct SequenceJob {
 std::vector<SequenceOutput> to_outputs(const SettingValue& value);
 SettingValue output_names(const std::vector<SequenceOutput>& outputs);
 
+/// `rows`, of a sequence. As a value for journals it is also the fields found, one array for each
+/// key: pair, width, height, coefficients in pixels.
+void add_sequence_rows_setting(Settings& settings, SequenceJob& job);
 // Options of it. The first has a group of its own, as has add_steadiness_settings(); the others go
 // to the present group.
 void add_input_settings(Settings& settings, SequenceJob& job);

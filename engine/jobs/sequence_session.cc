@@ -9,6 +9,8 @@
 
 #include "engine/error.h"
 #include "engine/options/frame_step_setting.h"
+#include "engine/rectification/row_correction.h"
+#include "engine/sequence/pairs/sequence_range.h"
 
 namespace vantage {
 namespace {
@@ -55,14 +57,42 @@ void SequenceSession::rectify(FramePair& pair, Execution& pool) const {
   const Rectifier* const used = own != nullptr ? &own->rectifier
                                 : rectifier    ? &*rectifier
                                                : nullptr;
-  if (used == nullptr || !used->needs_rectification()) {
-    return;
+  Photograph prepared;
+  if (used != nullptr && used->needs_rectification()) {
+    used->apply(pair.left, Side::kLeft, prepared, pool);
+    std::swap(pair.left, prepared);
+    used->apply(pair.right, Side::kRight, prepared, pool);
+    std::swap(pair.right, prepared);
   }
-  Photograph rectified;
-  used->apply(pair.left, Side::kLeft, rectified, pool);
-  std::swap(pair.left, rectified);
-  used->apply(pair.right, Side::kRight, rectified, pool);
-  std::swap(pair.right, rectified);
+  if (!rows.keys.empty()) {
+    correct_rows(pair.right, rows.at(pair.index), prepared, pool);
+    std::swap(pair.right, prepared);
+  }
+}
+
+std::optional<SequenceRows> find_rows(SequenceJob& job, Execution& execution,
+                                      SequenceSession& session) {
+  SequenceOptions& options = job.sequence;
+  std::optional<SequenceRows> found;
+  // Moments of the right image's pixels are not brought back.
+  if (!options.baselines.empty() || options.unrectified != UnrectifiedSearch::kNone ||
+      (options.match.reference == Side::kRight && options.saves_posterior())) {
+    job.rows = RowMode::kAsIs;
+  }
+  if (job.rows == RowMode::kAuto && !job.input.pairs.empty()) {
+    options.corrects_rows_per_pair = true;
+  } else if (job.rows == RowMode::kAuto && options.rows.keys.empty()) {
+    SequenceRowSurvey survey;
+    visit_sampled_pairs(*session.pairs, [&](FramePair& pair) {
+      session.rectify(pair, execution);
+      survey.add(pair.index, pair.left, pair.right, execution);
+    });
+    found = survey.result();
+    options.rows = found->track;
+    job.rows = options.rows.keys.empty() ? RowMode::kAsIs : RowMode::kAuto;
+  }
+  session.rows = options.rows;
+  return found;
 }
 
 bool SequenceSession::takes_any_size(const SequenceJob& job) const {

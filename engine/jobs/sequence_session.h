@@ -28,8 +28,10 @@ struct SequenceSession {
   std::string poses_note;  ///< about their number; may be empty
   PairShape shape;         ///< of the first pair that could be read
   FrameSelection selection;
+  RowTrack rows;  ///< those of the options, once they are known
 
-  /// Rectifies a pair in place if a calibration, the pair's or that of the job, must be applied.
+  /// Rectifies a pair in place if a calibration, the pair's or that of the job, must be applied,
+  /// and corrects its rows.
   void rectify(FramePair& pair, Execution& pool) const;
   /// Whether pairs may differ in size: those of a list, which may be unrelated.
   [[nodiscard]] bool takes_any_size(const SequenceJob& job) const;
@@ -37,6 +39,12 @@ struct SequenceSession {
   [[nodiscard]] SequenceRun run(const SequenceJob& job, PairSource& source, const ShotTable* shots,
                                 int in_flight) const;
 };
+
+/// Finds out how rows are corrected, if `job` leaves that open, from the pairs of
+/// visit_sampled_pairs(): sets rows and corrects_rows_per_pair of its options, or its RowMode to
+/// kAsIs. Returns what was found; empty where nothing was looked at.
+std::optional<SequenceRows> find_rows(SequenceJob& job, Execution& execution,
+                                      SequenceSession& session);
 
 /// The pairs of --frames, which counts the frames of the input; empty: all.
 std::optional<FrameRange> selected_pairs(const SequenceJob& job, const PairSource& pairs);

@@ -1,5 +1,9 @@
 #include "engine/rectification/row_check.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "engine/rectification/row_points.h"
 
 namespace vantage {
@@ -9,6 +13,7 @@ namespace {
 constexpr int kFeatures = 1000;
 constexpr int kFeatureSide_px = 640;
 /// Features of repeated texture are mistaken for each other.
+constexpr double kToldTurn_degrees = 0.005;
 constexpr double kMinFeatureShare = 0.5;
 
 }  // namespace
@@ -27,6 +32,22 @@ RowCheck check_rows(const Photograph& left, const Photograph& right, Execution* 
     check.error.reset();
   }
   return check;
+}
+
+std::string row_text(const RowEstimate& rows, std::string_view lines) {
+  const double offset_px = rows.field.offset_px();
+  const double turn = rows.field.turn_degrees();
+  const bool is_of_rows = lines == "rows";
+  std::string text = fmt::format("right image {:.2f} px {}", std::abs(offset_px),
+                                 offset_px >= 0 ? (is_of_rows ? "lower" : "to the right")
+                                                : (is_of_rows ? "higher" : "to the left"));
+  if (std::abs(turn) >= kToldTurn_degrees) {
+    text += fmt::format(", turned {:.2f} degrees", is_of_rows ? turn : -turn);
+  }
+  if (rows.terms > 3) {
+    text += fmt::format(", up to {:.1f} px at the border", rows.field.max_px());
+  }
+  return text;
 }
 
 std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right,

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
@@ -25,6 +27,10 @@ struct RowCheck {
 /// Thread rule: may be called concurrently.
 RowCheck check_rows(const Photograph& left, const Photograph& right,
                     Execution* execution = nullptr);
+
+/// "right image 1.3 px lower, turned 0.11 degrees"; `lines`: "rows", or "columns" of a transposed
+/// pair.
+std::string row_text(const RowEstimate& rows, std::string_view lines = "rows");
 
 /// RowCheck::error.
 std::optional<VerticalError> check_rectification(const Photograph& left, const Photograph& right,

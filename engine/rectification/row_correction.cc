@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <optional>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -62,6 +64,35 @@ void correct_rows(const Photograph& right, const RowField& field, Photograph& re
   result.origin = right.origin;
   result.left_out = with_moved_rows(
       right.left_out, [&](int x, int y) { return y + field.at(x, y); }, execution);
+}
+
+void correct_photograph(const Photograph& right, const RowField& field, const Rectifier& rectifier,
+                        Photograph& result, Execution& execution) {
+  std::visit(
+      [&]<typename T>(const Image<T>& from) {
+        const int width = from.width();
+        Image<T>& to = pixels_of<T>(result);
+        to.resize(width, from.height(), from.channels());
+        execution.for_each_band(from.height(), [&](int first_row, int end_row) {
+          RectifiedPositions positions(rectifier, Side::kRight);
+          std::vector<float> x_px(static_cast<std::size_t>(width));
+          std::vector<float> y_px(static_cast<std::size_t>(width));
+          for (int y = first_row; y < end_row; ++y) {
+            for (int x = 0; x < width; ++x) {
+              const Eigen::Vector2d at = positions.position(x, y);
+              const auto source = rectifier.source_position(
+                  Side::kRight, {at.x(), at.y() + field.at(at.x(), at.y())});
+              constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
+              const auto i = static_cast<std::size_t>(x);
+              x_px[i] = source ? static_cast<float>(source->x()) : kNowhere;
+              y_px[i] = source ? static_cast<float>(source->y()) : kNowhere;
+            }
+            remap_row(from, x_px.data(), y_px.data(), y, to);
+          }
+        });
+      },
+      right.pixels);
+  result.origin = right.origin;
 }
 
 void bring_to_given_rows(const RowField& field, MatchedMap& map, Execution& execution) {

@@ -3,6 +3,7 @@
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
 #include "engine/image/photograph.h"
+#include "engine/rectification/rectifier.h"
 #include "engine/rectification/row_field.h"
 
 namespace vantage {
@@ -13,6 +14,11 @@ enum class RowMode {
   kAsIs
 };
 
+/// Help of --rows.
+inline constexpr const char* kRowsHelp =
+    "Rows that do not correspond. auto: where pairs themselves show a smooth offset of up to a few "
+    "pixels, right images are resampled, and their maps are brought back to their pixels";
+
 // The right image of a pair on the rows of the left one. The left image, its maps and all depths in
 // its pixels stay as they are, and disparities are differences of columns as before. All functions
 // are identical for any `execution`. Thread rule: may be called concurrently for different results.
@@ -22,6 +28,12 @@ enum class RowMode {
 /// memory; it must not be `right`. Both must have the size of `field`.
 void correct_rows(const Photograph& right, const RowField& field, Photograph& result,
                   Execution& execution);
+
+/// The photograph whose rectified image is what correct_rows() makes of that of `right`, so that
+/// views can take its colours. As correct_rows(); 0 where the camera of the rectified image sees
+/// nothing.
+void correct_photograph(const Photograph& right, const RowField& field, const Rectifier& rectifier,
+                        Photograph& result, Execution& execution);
 
 /// Maps of the corrected right image on the pixels of the given one: every pixel has the values of
 /// the nearest row, also beyond the border. Empty maps stay empty.

@@ -12,6 +12,7 @@
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/video_coding.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/rectification/row_track.h"
 #include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/past/temporal_options.h"
 #include "engine/synthesis/synthesis_options.h"
@@ -103,6 +104,10 @@ struct SequenceOptions {
   /// without a cross-check.
   std::vector<double> baselines;
   UnrectifiedSearch unrectified = UnrectifiedSearch::kNone;
+  /// How the rows of right images are corrected. Right maps are then brought back to the pixels of
+  /// the given images; views show the corrected ones.
+  RowTrack rows;
+  bool corrects_rows_per_pair = false;  ///< instead, pairs are unrelated: each by its own points
   SynthesisOptions synthesis;
   std::vector<SequenceOutput> save = {SequenceOutput::kDisparity};  ///< at least one
   /// Outputs of `save` written as one H.264 video each instead of an image per frame; not maps of
@@ -144,6 +149,7 @@ struct SequenceOptions {
   void validate() const;
   [[nodiscard]] bool saves(SequenceOutput output) const;
   [[nodiscard]] bool saves_as_video(SequenceOutput output) const;
+  [[nodiscard]] bool corrects_rows() const { return corrects_rows_per_pair || !rows.keys.empty(); }
   [[nodiscard]] bool saves_posterior() const {
     return saves(SequenceOutput::kPosteriorMean) || saves(SequenceOutput::kPosteriorVariance);
   }

@@ -8,6 +8,7 @@ void FrameSlot::begin_frame() {
   is_absent = false;
   stored = nullptr;
   cameras.reset();
+  rows.reset();
   maps_are_read = false;
   match = {};
   deferred = {};

@@ -16,6 +16,7 @@
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
+#include "engine/rectification/row_field.h"
 #include "engine/sequence/journal/pending_files.h"
 #include "engine/sequence/journal/run_journal.h"
 #include "engine/sequence/pairs/pair_cameras.h"
@@ -40,7 +41,9 @@ struct FrameSlot {
   /// Of the pair's own calibration; null: the cameras of the run.
   std::shared_ptr<const PairCameras::Cameras> cameras;
   std::array<Photograph, 2> rectified;  ///< if a calibration is applied
-  const Photograph* left = nullptr;     ///< input of matching: of `pair` or `rectified`
+  Photograph corrected;                 ///< the right image on the rows of the left one
+  std::optional<RowField> rows;         ///< by which it was corrected
+  const Photograph* left = nullptr;     ///< input of matching: of `pair`, `rectified`, `corrected`
   const Photograph* right = nullptr;
   std::array<std::uint64_t, 2> content = {};  ///< content_hash() of the pair
   std::optional<Thumbnail> thumbnail;         ///< of the left frame of a stream, to find shots

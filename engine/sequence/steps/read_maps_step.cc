@@ -25,7 +25,8 @@ bool maps_are_stored(const SequenceOptions& options) {
 }
 
 bool has_stored_maps(const FrameTools& tools, const FrameSlot& slot) {
-  return slot.stored != nullptr && maps_are_stored(tools.options);
+  // Stored right maps are on other rows than those that views are made from.
+  return slot.stored != nullptr && !tools.options.corrects_rows() && maps_are_stored(tools.options);
 }
 
 /// False if a file has changed since it was written.

@@ -9,15 +9,17 @@
   STEP(read_step)                 \
   STEP(decode_step)               \
   STEP(rectify_step)              \
+  STEP(correct_rows_step)         \
   STEP(read_maps_step)            \
   STEP(match_step)                \
   STEP(finish_match_step)         \
   STEP(cyclopean_step)            \
   STEP(views_step)                \
-  STEP(preview_step)              \
-  STEP(depth_picture_step)        \
   STEP(stereo_step)               \
   STEP(comfort_step)              \
+  STEP(given_rows_step)           \
+  STEP(preview_step)              \
+  STEP(depth_picture_step)        \
   STEP(depth_resolution_step)     \
   STEP(encode_step)               \
   STEP(write_step)                \
