@@ -21,7 +21,7 @@ RowField mixed(const RowField& from, const RowField& to, double share) {
   return {from.width(), from.height(), terms};
 }
 
-RowField difference(const RowField& field, const RowField& other) {
+RowField without(const RowField& field, const RowField& other) {
   RowField::Terms terms = field.coefficients_px();
   for (std::size_t i = 0; i < terms.size(); ++i) {
     terms[i] -= other.coefficients_px()[i];
@@ -73,7 +73,7 @@ SequenceRows SequenceRowSurvey::result() const {
                       .rows = fit_rows(points_, width_, height_),
                       .pairs = static_cast<int>(samples_.size())};
   const auto differs = [&](const Sample& sample) {
-    return !result.rows || difference(sample.rows.field, result.rows->field).max_px() >
+    return !result.rows || without(sample.rows.field, result.rows->field).max_px() >
                                std::max(kMinCorrection_px, 3 * sample.rows.deviation_px);
   };
   const auto differing = std::count_if(samples_.begin(), samples_.end(), differs);
