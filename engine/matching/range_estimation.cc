@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -39,7 +38,7 @@ constexpr double kGapRatio = 0.1;
 constexpr double kApartShare = 0.003;
 /// The same behind everything else, but not behind infinity: background that little is seen of.
 constexpr double kBehindShare = 0.001;
-/// Share of the negative support below which infinity is the end: a small part of an untextured sky
+/// Share of negative matches below which infinity is the end: a small part of an untextured sky
 /// may match at any disparity.
 constexpr double kNegativeShare = 0.02;
 /// Matches spread over a larger part of the search range are random.
@@ -116,8 +115,16 @@ struct Agreement {
   int factor = 1;
   DisparityRange search;               ///< in reduced pixels
   std::vector<MatchedRegion> regions;  ///< that count, by their least disparity; may be empty
-  double support = 0;                  ///< of all
-  double support_share = 0;            ///< the same divided by the number of pixels
+  std::vector<int> half_pixels;        ///< of all regions, sorted
+  double support = 0;                  ///< of all regions
+  double pixels = 0;                   ///< of an image
+
+  /// Share of the matches below `half_pixels_end` half pixels; 0 if there are none.
+  [[nodiscard]] double share_below(double half_pixels_end) const {
+    const auto end = std::lower_bound(half_pixels.begin(), half_pixels.end(), half_pixels_end);
+    return static_cast<double>(end - half_pixels.begin()) /
+           std::max(1.0, static_cast<double>(half_pixels.size()));
+  }
 };
 
 /// The span of all groups that are more than chance; `agreement` has regions.
@@ -161,9 +168,6 @@ Agreement agreement_of(const Photograph& left, const Photograph& right, Disparit
     ++factor;
   }
   agreement.search = search_in(left.width() / factor);
-  if (agreement.search.count() == 1) {
-    return agreement;  // a single candidate always wins
-  }
   const HalfPixelImage left_grey = reduced(left, factor, execution);
   std::vector<MatchedRegion>& regions = agreement.regions;
   regions = find_window_matches(left_grey, reduced(right, factor, execution), agreement.search,
@@ -176,25 +180,17 @@ Agreement agreement_of(const Photograph& left, const Photograph& right, Disparit
   for (const MatchedRegion& region : regions) {
     agreement.support += region.support;
   }
-  agreement.support_share = agreement.support / (static_cast<double>(left_grey.at_pixels.width()) *
-                                                 left_grey.at_pixels.height());
-  if (agreement.support_share < kMinSupportShare) {
+  agreement.pixels =
+      static_cast<double>(left_grey.at_pixels.width()) * left_grey.at_pixels.height();
+  if (agreement.support < kMinSupportShare * agreement.pixels) {
     regions.clear();
   }
-  return agreement;
-}
-
-/// Share of the disparities of all regions for which `is_counted` holds.
-template <typename Predicate>
-double share_of(const std::vector<MatchedRegion>& regions, const Predicate& is_counted) {
-  double counted = 0;
-  double all = std::numeric_limits<double>::min();
+  std::vector<int>& all = agreement.half_pixels;
   for (const MatchedRegion& region : regions) {
-    all += static_cast<double>(region.half_pixels.size());
-    counted += static_cast<double>(
-        std::count_if(region.half_pixels.begin(), region.half_pixels.end(), is_counted));
+    all.insert(all.end(), region.half_pixels.begin(), region.half_pixels.end());
   }
-  return counted / all;
+  std::sort(all.begin(), all.end());
+  return agreement;
 }
 
 }  // namespace
@@ -213,17 +209,14 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
   }
   const double min_px = 0.5 * factor * span.min;
   const double max_px = 0.5 * factor * span.max;
-  const double unseen = 1 - std::min(1.0, agreement.support_share / kFullSupport);
+  const double unseen = 1 - std::min(1.0, agreement.support / (kFullSupport * agreement.pixels));
   const double margin_px = kMarginPx + (kMarginReducedPx + unseen * kUnseenReducedPx) * factor +
                            (kMarginRatio + unseen * kUnseenRatio) * (max_px - min_px);
   const int farthest = left.width() - 1;
   DisparityRange range{
       std::clamp(static_cast<int>(std::floor(min_px - margin_px)), -farthest, farthest),
       std::clamp(static_cast<int>(std::ceil(max_px + margin_px)), -farthest, farthest)};
-  if (infinity == Infinity::kAnywhere) {
-    return range;
-  }
-  if (share_of(agreement.regions, [](int d) { return d < -1; }) < kNegativeShare) {
+  if (infinity == Infinity::kAtZero && agreement.share_below(-1) < kNegativeShare) {
     range.min = std::max(range.min, 0);
   }
   return range;
@@ -251,9 +244,9 @@ DisparitiesBeyond disparities_beyond(const Photograph& left, const Photograph& r
   const double tolerance = kMarginPx + kMarginReducedPx * factor;
   const double low = (range.min - tolerance) / factor;
   const double high = (range.max + tolerance) / factor;
-  const auto share = [&](const auto& is_beyond) { return share_of(agreement.regions, is_beyond); };
-  return {.below = share([&](int d) { return 0.5 * d < low; }),
-          .above = share([&](int d) { return 0.5 * d > high; }),
+  const bool is_known = !agreement.regions.empty();
+  return {.below = agreement.share_below(2 * low),
+          .above = is_known ? 1 - agreement.share_below(std::floor(2 * high) + 1) : 0,
           .reaches_below = agreement.search.min<low, .reaches_above = agreement.search.max> high};
 }
 
