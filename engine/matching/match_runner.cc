@@ -52,6 +52,13 @@ void set_needs(const SearchAbilities& abilities, SearchJob& job) {
   }
 }
 
+std::string note_of(const FoundNoise& noise, const NoiseFilter& filter) {
+  const std::string what = noise.kind == NoiseKind::kCodec
+                               ? "blocks of a lossy codec"
+                               : fmt::format("{:.1f} grey levels", noise.grey_levels);
+  return fmt::format("noise: {}; images are compared smoothed by {:.0f} px", what, filter.sigma_px);
+}
+
 }  // namespace
 
 MatchRunner::MatchRunner(const ResolvedMatchOptions& options, Execution& execution)
@@ -62,28 +69,29 @@ MatchRunner::MatchRunner(const ResolvedMatchOptions& options, Execution& executi
   }
 }
 
-NoiseTreatment MatchRunner::treatment_of(const MatchCall& call) {
+FoundNoise MatchRunner::noise_of(const MatchCall& call) {
+  if (options_.noise) {
+    const NoiseKind kind = *options_.noise > 0 ? NoiseKind::kSensor : NoiseKind::kNone;
+    return {.kind = kind, .grey_levels = *options_.noise};
+  }
   std::vector<const Photograph*> photographs;
   for (const SearchedPhotograph& image : call.images) {
     photographs.push_back(image.photograph);
   }
   const bool has_rows = call.baselines.empty() && call.grids == nullptr;
-  return noise_treatment(photographs, options_.noise,
-                         has_rows ? std::optional(options_.disparities) : std::nullopt, execution_);
+  return find_noise(photographs, has_rows ? std::optional(options_.disparities) : std::nullopt,
+                    execution_);
 }
 
-MatchCall MatchRunner::treated(const MatchCall& call, const NoiseTreatment& treatment,
-                               std::vector<SmoothedPhotograph>& smoothed) {
-  MatchCall result = call;
+void MatchRunner::smooth(const NoiseFilter& filter, std::vector<SmoothedPhotograph>& smoothed,
+                         MatchCall& call) {
   smoothed.resize(call.images.size());
   for (std::size_t i = 0; i < call.images.size(); ++i) {
-    const Photograph& photograph = *call.images[i].photograph;
+    const Photograph*& photograph = call.images[i].photograph;
     const bool is_colour =
-        options_.parameters.colour == ColourUse::kChannels && photograph.channels() >= 3;
-    result.images[i].photograph =
-        &smoothed[i].make(photograph, is_colour ? 3 : 1, treatment.filter, execution_);
+        options_.parameters.colour == ColourUse::kChannels && photograph->channels() >= 3;
+    photograph = &smoothed[i].make(*photograph, is_colour ? 3 : 1, filter, execution_);
   }
-  return result;
 }
 
 /// keeps_costs: for the pair after it.
@@ -124,17 +132,17 @@ void MatchRunner::run(const MatchCall& given, const MatchRequest& request, Dispa
   }
   StageClock clock(times);
   clock.start("noise");
-  const NoiseTreatment treatment = treatment_of(given);
+  times.noise = noise_of(given);
+  const NoiseFilter filter = filter_of(times.noise);
   const auto smoothed = smoothed_.borrow();
   MatchCall call = given;
-  if (treatment.acts()) {
-    call = treated(given, treatment, *smoothed);
+  if (filter.smooths()) {
+    smooth(filter, *smoothed, call);
     if (!is_resumed) {
-      times.note("noise", treatment.text());
+      times.note("noise", note_of(times.noise, filter));
     }
   }
-  times.noise = treatment.found;
-  const auto& options = options_of_[static_cast<std::size_t>(treatment.found.kind)];
+  const auto& options = options_of_[static_cast<std::size_t>(times.noise.kind)];
   SearchJob job = job_of(options, call, request, maps, times, clock);
   const MatchSize size = size_of(call, request.previous != nullptr);
   const SearchEntry& entry = search_of(options, size);

@@ -7,7 +7,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/memory_use.h"
-#include "engine/matching/noise/noise_treatment.h"
+#include "engine/matching/noise/noise_filter.h"
 #include "engine/matching/search_table.h"
 
 namespace vantage {
@@ -38,10 +38,11 @@ class MatchRunner {
   void add_memory_use(MemoryUse& use) const;
 
  private:
-  /// The call with images as costs see them; the report says what was found in them.
-  [[nodiscard]] MatchCall treated(const MatchCall& call, const NoiseTreatment& treatment,
-                                  std::vector<SmoothedPhotograph>& smoothed);
-  [[nodiscard]] NoiseTreatment treatment_of(const MatchCall& call);
+  /// As given, or found in the images.
+  [[nodiscard]] FoundNoise noise_of(const MatchCall& call);
+  /// Replaces the images of the call by what costs see of them.
+  void smooth(const NoiseFilter& filter, std::vector<SmoothedPhotograph>& smoothed,
+              MatchCall& call);
   [[nodiscard]] MatchSize size_of(const MatchCall& call, bool keeps_costs) const;
   [[nodiscard]] SearchJob job_of(const ResolvedMatchOptions& options, const MatchCall& call,
                                  const MatchRequest& request, DisparityMaps& maps,

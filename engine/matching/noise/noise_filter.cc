@@ -26,6 +26,18 @@ kernels::BilateralRow row_of(int width, const NoiseFilter& filter) {
 
 }  // namespace
 
+NoiseFilter filter_of(const FoundNoise& noise) {
+  switch (noise.kind) {
+    case NoiseKind::kNone:
+      break;
+    case NoiseKind::kCodec:
+      return {.sigma_px = 1, .cut_off_grey_levels = 20};
+    case NoiseKind::kSensor:
+      return {.sigma_px = 2, .cut_off_grey_levels = 3.5 * noise.grey_levels};
+  }
+  return {};
+}
+
 const Photograph& SmoothedPhotograph::make(const Photograph& photograph, int channels,
                                            const NoiseFilter& filter, Execution& execution) {
   const int width = photograph.width();

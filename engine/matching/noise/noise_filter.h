@@ -5,6 +5,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
+#include "engine/matching/noise/noise_estimate.h"
 
 namespace vantage {
 
@@ -15,6 +16,8 @@ struct NoiseFilter {
 
   [[nodiscard]] bool smooths() const { return sigma_px > 0; }
 };
+/// The filter that pays for such noise (perf/log/2026-11-27-noise.md).
+NoiseFilter filter_of(const FoundNoise& noise);
 
 /// A photograph as costs see it: smoothed intensities, floats 0..1. Working memory, reused without
 /// allocation for images of the same size. What it makes must not outlive the photograph.
