@@ -1,18 +1,11 @@
 #pragma once
 
-#include "engine/execution.h"
 #include "engine/image/photograph.h"
-#include "engine/image/photograph_origin.h"
 
 namespace vantage {
 
-/// Size, exposure and texture of a photograph; shares of its pixels.
+/// Exposure and texture of a photograph; shares of its pixels.
 struct ImageStatistics {
-  int width_px = 0;
-  int height_px = 0;
-  int channels = 0;
-  PhotographOrigin origin = {};
-  int bits = 0;            ///< of a stored value
   double mean_grey = 0;    ///< grey levels, 0..255
   double black_share = 0;  ///< at most 1 grey level
   double white_share = 0;  ///< at least 254 grey levels
@@ -21,9 +14,8 @@ struct ImageStatistics {
   double textureless_share = 0;
 };
 
-/// `noise_grey`: standard deviation of the noise in grey levels, 0: unknown. Identical for any
-/// `execution`. Thread rule: may be called concurrently.
-ImageStatistics image_statistics(const Photograph& photograph, double noise_grey,
-                                 Execution& execution);
+/// `noise_grey`: standard deviation of the noise in grey levels, 0: none. Thread rule: may be
+/// called concurrently.
+ImageStatistics image_statistics(const Photograph& photograph, double noise_grey);
 
 }  // namespace vantage

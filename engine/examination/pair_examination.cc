@@ -41,14 +41,13 @@ void try_match(const Photograph& left, const Photograph& right, MatchOptions opt
                           : report.noise;  // that of images as they are
 }
 
-void examine_images(const Photograph& left, const Photograph& right, Execution& execution,
-                    PairExamination& examination) {
+void examine_images(const Photograph& left, const Photograph& right, PairExamination& examination) {
   const FoundNoise& noise = examination.noise;
   const double noise_grey = noise.kind == NoiseKind::kSensor ? noise.grey_levels : 0;
   for (const Side side : {Side::kLeft, Side::kRight}) {
     const bool is_left = side == Side::kLeft;
     ImageStatistics& image = examination.images[index_of(side)];
-    image = image_statistics(is_left ? left : right, noise_grey, execution);
+    image = image_statistics(is_left ? left : right, noise_grey);
     if (image.textureless_share > kMaxTexturelessShare) {
       examination.problems.push_back(fmt::format("{:.1f} % of the {} image have no texture",
                                                  100 * image.textureless_share,
@@ -61,10 +60,6 @@ void examine_images(const Photograph& left, const Photograph& right, Execution& 
 
 PairExamination examine_pair(const Photograph& left, const Photograph& right,
                              const MatchOptions& options, Execution& execution) {
-  if (left.width() != right.width() || left.height() != right.height()) {
-    throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
-                            left.width(), left.height(), right.width(), right.height()));
-  }
   PairExamination examination;
   std::string failure;
   try {
@@ -75,7 +70,7 @@ PairExamination examine_pair(const Photograph& left, const Photograph& right,
   if (content_hash(left) == content_hash(right)) {
     examination.problems.emplace_back("left and right are the same picture");
   }
-  examine_images(left, right, execution, examination);
+  examine_images(left, right, examination);
   examination.rows = check_rectification(left, right, &execution);
   if (!failure.empty()) {
     examination.problems.push_back(failure);

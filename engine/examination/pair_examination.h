@@ -29,9 +29,8 @@ struct PairExamination {
 };
 
 /// Examines a pair that is ready for matching, and matches it with `options`, large images reduced
-/// to 4 megapixels; `seconds` are then estimated. Throws Error when
-/// sizes differ. Results other than `seconds` are identical for any `execution`. Thread rule: may
-/// be called concurrently.
+/// to 4 megapixels; `seconds` are then estimated. Images of equal size. Results other than
+/// `seconds` are identical for any `execution`. Thread rule: may be called concurrently.
 PairExamination examine_pair(const Photograph& left, const Photograph& right,
                              const MatchOptions& options, Execution& execution);
 

@@ -68,7 +68,7 @@ TEST_F(CheckCommand, NamesTheCommandThatMatchesThePair) {
 TEST_F(CheckCommand, KeepsOptionsOfTheMatch) {
   succeeds(check({left_, right_, "--preset", "realtime", "--disparities=0:15", "--threads", "1"}));
   const std::string command = results()["command"];
-  EXPECT_THAT(command, AllOf(HasSubstr(" --preset realtime"), HasSubstr(" --disparities 0:15"),
+  EXPECT_THAT(command, AllOf(HasSubstr(" --preset=realtime"), HasSubstr(" --disparities=0:15"),
                              Not(HasSubstr("threads"))));
   Words typed = words(command.substr(std::string("vantage ").size()));
   std::ranges::replace(typed, std::string("disparity.pfm"), folder_ / "disparity.pfm");
@@ -166,7 +166,7 @@ TEST_F(CheckCommand, TakesPicturesThatHoldBothImages) {
   succeeds(check({frames, "--packing", "sbsl"}));
   EXPECT_EQ(results()["pairs"][0]["width_px"], kWidth);
   EXPECT_EQ(results()["command"],
-            "vantage run --stereo '" + frames + "' -o results --packing sbsl");
+            "vantage run --stereo '" + frames + "' -o results --packing=sbsl");
 }
 
 }  // namespace vantage::command_check_test
