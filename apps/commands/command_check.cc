@@ -48,9 +48,9 @@ struct CheckedPairs {
     if (problem.empty() && !found.problems.empty()) {
       problem = found.problems.front();
     }
-    if (found.rows) {
-      exchanged_votes += found.rows->looks_exchanged() ? 1 : -1;
-      rectified_votes += is_rectified(*found.rows) ? kMaxExamined : -1;
+    if (const auto& error = found.rows.error) {
+      exchanged_votes += error->looks_exchanged() ? 1 : -1;
+      rectified_votes += rows_correspond(found.rows) ? kMaxExamined : -1;
     }
     if (const auto& own = found.disparities) {
       const DisparityRange all = disparities.value_or(*own);

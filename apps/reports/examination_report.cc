@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/inputs/rectification_check.h"
 #include "apps/process/tell.h"
 #include "apps/reports/remarks.h"
 #include "apps/reports/vertical_error_report.h"
@@ -34,6 +35,16 @@ std::string noise_text(const FoundNoise& noise) {
                                            : "none that matters";
 }
 
+std::string rows_text(const RowCheck& check) {
+  if (check.pays()) {
+    return fmt::format("{}; --rows auto corrects them, points agree to {:.2f} px",
+                       row_text(*check.rows, "rows"), check.rows->residual_px);
+  }
+  return !check.error ? "unknown: too few points in common"
+                      : (rows_correspond(check) ? "correspond" : cost_text(*check.error, "they")) +
+                            ": " + vertical_error_text(*check.error);
+}
+
 SettingValue image_values(const Photograph& photograph, const ImageStatistics& image) {
   SettingValue values = {
       {"channels", photograph.channels()}, {"bits", bits_of(photograph)},
@@ -47,6 +58,10 @@ SettingValue image_values(const Photograph& photograph, const ImageStatistics& i
 }
 
 }  // namespace
+
+bool rows_correspond(const RowCheck& check) {
+  return check.rows || (check.error && is_rectified(*check.error));
+}
 
 std::string table_line(std::string_view label, const std::string& text) {
   return fmt::format("{:<12} {}\n", label, text);
@@ -64,13 +79,10 @@ std::string examination_text(const FramePair& pair, const PairExamination& found
   text += table_line("texture",
                      fmt::format("{:.0f} and {:.0f} % of the pixels have none",
                                  100 * left.textureless_share, 100 * right.textureless_share));
-  if (const auto& rows = found.rows) {
-    text += table_line("sides", rows->looks_exchanged() ? exchanged_text(*rows) : "left is left");
-    text += table_line("rows", (is_rectified(*rows) ? "correspond" : cost_text(*rows, "they")) +
-                                   ": " + vertical_error_text(*rows));
-  } else {
-    text += table_line("rows", "unknown: too few points in common");
+  if (const auto& error = found.rows.error) {
+    text += table_line("sides", error->looks_exchanged() ? exchanged_text(*error) : "left is left");
   }
+  text += table_line("rows", rows_text(found.rows));
   if (found.disparities) {
     text += table_line("noise", noise_text(found.noise));
     text += table_line("range", to_text(*found.disparities));
@@ -93,10 +105,13 @@ SettingValue examination_values(const FramePair& pair, const PairExamination& fo
                          {"left", image_values(pair.left, found.images[0])},
                          {"right", image_values(pair.right, found.images[1])},
                          {"problems", found.problems}};
-  if (found.rows) {
-    values["rectification"] = vertical_error_values(*found.rows);
-    values["rectification"]["is_rectified"] = is_rectified(*found.rows);
-    values["rectification"]["looks_exchanged"] = found.rows->looks_exchanged();
+  if (const auto& error = found.rows.error) {
+    values["rectification"] = vertical_error_values(*error);
+    values["rectification"]["is_rectified"] = rows_correspond(found.rows);
+    values["rectification"]["looks_exchanged"] = error->looks_exchanged();
+  }
+  if (found.rows.rows) {
+    values["rows"] = row_values(*found.rows.rows, found.rows.pays());
   }
   if (found.disparities) {
     values["disparities"] = to_text(*found.disparities);

@@ -9,6 +9,8 @@
 
 namespace vantage::apps {
 
+/// Whether rows correspond, or are corrected where a match finds how.
+bool rows_correspond(const RowCheck& check);
 /// A line of the table of `check`.
 std::string table_line(std::string_view label, const std::string& text);
 /// What was found in a pair, as lines of the table.

@@ -11,7 +11,7 @@
 #include "engine/image/content_hash.h"
 #include "engine/image/side.h"
 #include "engine/matching/pair_matcher.h"
-#include "engine/rectification/row_check.h"
+#include "engine/rectification/row_correction.h"
 #include "engine/seconds_since.h"
 
 namespace vantage {
@@ -61,9 +61,14 @@ void examine_images(const Photograph& left, const Photograph& right, PairExamina
 PairExamination examine_pair(const Photograph& left, const Photograph& right,
                              const MatchOptions& options, Execution& execution) {
   PairExamination examination;
+  examination.rows = check_rows(left, right, &execution);
+  Photograph corrected;
+  if (examination.rows.pays()) {
+    correct_rows(right, examination.rows.rows->field, corrected, execution);
+  }
   std::string failure;
   try {
-    try_match(left, right, options, execution, examination);
+    try_match(left, examination.rows.pays() ? corrected : right, options, execution, examination);
   } catch (const Error& error) {
     failure = error.what();
   }
@@ -71,7 +76,6 @@ PairExamination examine_pair(const Photograph& left, const Photograph& right,
     examination.problems.emplace_back("left and right are the same picture");
   }
   examine_images(left, right, examination);
-  examination.rows = check_rectification(left, right, &execution);
   if (!failure.empty()) {
     examination.problems.push_back(failure);
   } else if (examination.shares.matched < kMinMatchedShare) {

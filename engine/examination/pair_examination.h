@@ -11,7 +11,7 @@
 #include "engine/matching/noise/noise_estimate.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/worth/map_shares.h"
-#include "engine/rectification/vertical_error.h"
+#include "engine/rectification/row_check.h"
 #include "engine/remark.h"
 
 namespace vantage {
@@ -19,7 +19,7 @@ namespace vantage {
 /// What a pair is like, and what a match of it is worth.
 struct PairExamination {
   std::array<ImageStatistics, 2> images;  ///< by index_of(Side)
-  std::optional<VerticalError> rows;      ///< empty: too few points in common
+  RowCheck rows;
   FoundNoise noise;
   std::optional<DisparityRange> disparities;  ///< that were searched; empty: there was no match
   MapShares shares;                           ///< of the left map
@@ -28,9 +28,10 @@ struct PairExamination {
   std::vector<std::string> problems;  ///< why a match makes no sense, a line each; empty: it does
 };
 
-/// Examines a pair that is ready for matching, and matches it with `options`, large images reduced
-/// to 4 megapixels; `seconds` are then estimated. Images of equal size. Results other than
-/// `seconds` are identical for any `execution`. Thread rule: may be called concurrently.
+/// Examines a pair that is ready for matching, corrects rows where that pays, and matches it with
+/// `options`, large images reduced to 4 megapixels; `seconds` are then estimated. Images of equal
+/// size. Results other than `seconds` are identical for any `execution`. Thread rule: may be called
+/// concurrently.
 PairExamination examine_pair(const Photograph& left, const Photograph& right,
                              const MatchOptions& options, Execution& execution);
 
