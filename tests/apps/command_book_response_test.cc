@@ -138,8 +138,10 @@ TEST_F(AutomaticDisparities, SynthAndRunTakeItToo) {
   ProcessResult result = succeeds(run_vantage(
       {"synth", left_, right_, "-o", folder_ / "v.png", "--view", "0.5", "--disparities=auto"}));
   EXPECT_THAT(result.err, HasSubstr("synth: --disparities auto is "));
-  result = succeeds(run_vantage({"run", "--left", left_, "--right", right_, "-o", folder_ / "out",
-                                 "--disparities", "auto", "--report", folder_ / "r.json"}));
+  result = succeeds(
+      run_vantage({"run", "--left", left_, "--right", right_, "-o", folder_ / "out",
+                   "--disparities", "auto", "--progress", "bar", "--report", folder_ / "r.json"}));
+  EXPECT_THAT(result.err, HasSubstr("1/1 pairs searched for the range"));
   EXPECT_THAT(result.err, HasSubstr("run: --disparities auto is "));
   EXPECT_NE(read_json(folder_ / "r.json")["settings"]["disparities"], "auto");
 }
