@@ -47,7 +47,7 @@ void MatchResult::match(const PairMatcher& matcher, const std::vector<Photograph
   computed.report.remarks.insert(computed.report.remarks.begin(), images_.remarks().begin(),
                                  images_.remarks().end());
   if (wanted.posterior) {
-    moments.erase(photographs[images_.reference(side)].left_out, execution_);
+    moments.erase(photographs[images_.reference(side)].left_out);
     computed.posterior = {moments.mean_px().copy(), moments.variance_px2().copy()};
   }
   computed.has = wanted;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/image/black_border.h"
-#include "engine/image/scene_mask.h"
+#include "engine/io/images/scene_mask.h"
 
 namespace vantage::python {
 namespace {
@@ -22,8 +22,8 @@ Photograph borrowed(const Photograph& photograph) {
 }  // namespace
 
 MatchedImages::MatchedImages(std::vector<PixelArray> arrays, std::vector<double> baselines,
-                             std::array<std::shared_ptr<const Photograph>, 2> masks,
-                             bool finds_borders, std::optional<double> white_level)
+                             std::array<Mask, 2> masks, bool finds_borders,
+                             std::optional<double> white_level)
     : arrays_(std::move(arrays)),
       baselines_(std::move(baselines)),
       masks_(std::move(masks)),
@@ -51,17 +51,16 @@ std::vector<Photograph> MatchedImages::photographs() const {
   for (const Photograph& photograph : own_) {
     photographs.push_back(borrowed(photograph));
   }
-  const bool has_masks = masks_[0] != nullptr || masks_[1] != nullptr;
-  const bool has_borders = finds_borders_ && (may_have_black_border(photographs[0]) ||
-                                              may_have_black_border(photographs[1]));
-  if (has_masks || has_borders) {  // whose pixels get other values
+  std::array<Mask, 2> masks = {masks_[0].copy(), masks_[1].copy()};
+  if (finds_borders_) {
+    masks = {black_border(photographs[0]), black_border(photographs[1])};
+  }
+  if (!masks[0].empty() || !masks[1].empty()) {  // whose pixels get other values
     for (const std::size_t i : {0, 1}) {
       photographs[i] = arrays_[i].copy();
       white_level_.apply(photographs[i]);
     }
-    const SceneMaskOptions options{.left = finds_borders_ ? "" : "none"};
-    leave_out_of_pair(options, {masks_[0].get(), masks_[1].get()}, nullptr, photographs[0],
-                      photographs[1]);
+    leave_out_of_pair({}, std::move(masks), photographs[0], photographs[1]);
   }
   return photographs;
 }

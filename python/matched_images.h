@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -17,10 +16,9 @@ class MatchedImages {
  public:
   /// Arrays of the caller, read in place where their layout allows: two, or with `baselines` as
   /// many more as there are numbers, see StereoMatcher::match_several().
-  /// `masks`: pictures of the first two, black where they show no scene; null pointers: none.
+  /// `masks`: of the first two, 255 where they show no scene; empty: all do.
   MatchedImages(std::vector<PixelArray> arrays, std::vector<double> baselines,
-                std::array<std::shared_ptr<const Photograph>, 2> masks, bool finds_borders,
-                std::optional<double> white_level);
+                std::array<Mask, 2> masks, bool finds_borders, std::optional<double> white_level);
   /// A pair that nobody else can change.
   MatchedImages(Photograph left, Photograph right);
 
@@ -53,8 +51,8 @@ class MatchedImages {
   std::vector<PixelArray> arrays_;  ///< empty: `own_`
   std::vector<Photograph> own_;
   std::vector<double> baselines_;
-  std::array<std::shared_ptr<const Photograph>, 2> masks_;  ///< of arrays_
-  bool finds_borders_ = false;                              ///< of arrays_
+  std::array<Mask, 2> masks_;   ///< of arrays_
+  bool finds_borders_ = false;  ///< of arrays_
   std::optional<double> white_level_given_;
   WhiteLevel white_level_;
   std::vector<std::uint32_t> checksums_;  ///< of arrays_

@@ -4,8 +4,8 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <tuple>
 
+#include "engine/io/images/scene_mask.h"
 #include "engine/options/pair_source_settings.h"
 #include "python/arrays.h"
 #include "python/calls.h"
@@ -33,14 +33,13 @@ MatchedImages ImageArguments::images(std::optional<double> white_level) const {
   for (std::size_t i = 0; i < more.size(); ++i) {
     arrays.emplace_back(more[i], order, fmt::format("more[{}]", i));
   }
-  std::array<std::shared_ptr<const Photograph>, 2> masks;
-  const bool is_none = py::isinstance<py::str>(mask) && py::str(mask).equal(py::str("none"));
-  for (const auto& [given, name, i] :
-       {std::tuple{&mask, "mask", 0}, std::tuple{&mask_right, "mask_right", 1}}) {
-    if (!given->is_none() && !(i == 0 && is_none)) {
-      masks[static_cast<std::size_t>(i)] =
-          std::make_shared<const Photograph>(Photograph{mask_from(*given, name)});
-    }
+  std::array<Mask, 2> masks;
+  const bool is_none = py::isinstance<py::str>(mask) && mask.equal(py::str("none"));
+  if (!mask.is_none() && !is_none) {
+    masks[0] = black_pixels(Photograph{mask_from(mask, "mask")});
+  }
+  if (!mask_right.is_none()) {
+    masks[1] = black_pixels(Photograph{mask_from(mask_right, "mask_right")});
   }
   const bool finds_borders = mask.is_none() && mask_right.is_none();
   return {std::move(arrays), baselines, std::move(masks), finds_borders, white_level};

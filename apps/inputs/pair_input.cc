@@ -8,7 +8,6 @@
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/inputs/given_maps.h"
 #include "apps/inputs/kitti_cameras_choice.h"
-#include "apps/inputs/masked_images.h"
 #include "apps/reports/remarks.h"
 #include "engine/error.h"
 #include "engine/image/white_level.h"
@@ -117,7 +116,7 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
   Photograph* const images_read[] = {&result.left, &result.right};
   tell_remarks(scale_to_white_level(images_read, pair.white_level), common, report);
   if (!pair.has_maps()) {
-    leave_out_masked(pair.masks, result.left, result.right);
+    leave_out_of_pair(pair.masks, result.left, result.right);
   }
   if (!pair.calibration.empty()) {
     const std::filesystem::path images[] = {pair.left, pair.right};

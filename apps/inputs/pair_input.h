@@ -8,7 +8,7 @@
 #include "apps/reports/run_report.h"
 #include "apps/settings/common_options.h"
 #include "engine/execution.h"
-#include "engine/image/scene_mask.h"
+#include "engine/io/images/scene_mask.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/settings.h"

@@ -8,7 +8,7 @@
 #include "apps/settings/applied_tuning.h"
 #include "apps/settings/common_options.h"
 #include "apps/settings/depth_settings.h"
-#include "engine/image/scene_mask.h"
+#include "engine/io/images/scene_mask.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/settings.h"

@@ -11,7 +11,6 @@
 #include "apps/commands/commands.h"
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/inputs/kitti_cameras_choice.h"
-#include "apps/inputs/masked_images.h"
 #include "apps/inputs/rectification_check.h"
 #include "apps/match/match_outputs.h"
 #include "apps/match/vertical_pair.h"
@@ -83,7 +82,7 @@ std::vector<Photograph> read_images(const MatchJob& job, RunReport& report) {
     all.push_back(&image);
   }
   tell_remarks(scale_to_white_level(all, job.white_level), job.common, report);
-  report.timed_file_access("read", [&] { leave_out_masked(job.masks, images[0], images[1]); });
+  report.timed_file_access("read", [&] { leave_out_of_pair(job.masks, images[0], images[1]); });
   return images;
 }
 
@@ -330,8 +329,7 @@ int run_match(MatchJob& job, const Settings& settings) {
   SpaceOutputs space(job);
   compute_maps(job, inputs, asked, matcher, space.requests(job), execution, report, matched);
   if (space.posterior) {
-    space.posterior->erase(inputs.images[job.has_several() ? 0 : index_of(side_of(job))].left_out,
-                           execution);
+    space.posterior->erase(inputs.images[job.has_several() ? 0 : index_of(side_of(job))].left_out);
   }
   tell_match(matched.report, job.common, report);
   report.set_memory(memory_use(inputs, matched.maps, matcher, execution));

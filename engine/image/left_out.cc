@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -15,6 +16,21 @@ namespace vantage {
 namespace {
 
 constexpr std::uint8_t kSet = 255;
+
+/// Pixels of constant images are only read.
+template <typename T>
+cv::Mat as_mat(ImageView<const T> image) {
+  return {image.height(), image.width(), CV_MAKETYPE(cv::DataType<T>::depth, image.channels()),
+          const_cast<T*>(image.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+          image.stride() * sizeof(T)};
+}
+
+template <typename T>
+void set_where(const Mask& mask, double value, Image<T>& image) {
+  if (!mask.empty() && !image.empty()) {
+    as_mat<T>(image.view()).setTo(cv::Scalar::all(value), as_mat<std::uint8_t>(mask.view()));
+  }
+}
 
 /// False, and nothing is written, if the row shows no scene.
 template <typename T>
@@ -55,76 +71,43 @@ void fill_image(const Mask& left_out, Image<T>& image) {
   }
 }
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-template <typename T>
-void erase(const Mask& left_out, T unknown, Execution& execution, Image<T>& image) {
-  if (image.empty() || left_out.empty()) {
-    return;
-  }
-  execution.for_each_row(image.height(), [&](int y) {
-    const std::uint8_t* const is_left_out = left_out.row(y);
-    for (int x = 0; x < image.width(); ++x) {
-      image.at(x, y) = is_left_out[x] != 0 ? unknown : image.at(x, y);
-    }
-  });
-}
-
 }  // namespace
 
 void leave_out(Photograph& photograph, Mask left_out) {
-  if (!left_out.empty()) {
-    std::visit([&](auto& image) { fill_image(left_out, image); }, photograph.pixels);
+  photograph.left_out = share_of(left_out) > 0 ? std::move(left_out) : Mask();
+  if (!photograph.left_out.empty()) {
+    std::visit([&](auto& image) { fill_image(photograph.left_out, image); }, photograph.pixels);
   }
-  photograph.left_out = std::move(left_out);
 }
 
 void blacken_left_out(Photograph& photograph) {
-  std::visit(
-      [&]<typename T>(Image<T>& image) {
-        for (int y = 0; y < photograph.left_out.height(); ++y) {
-          for (int x = 0; x < image.width(); ++x) {
-            if (photograph.left_out.at(x, y) != 0) {
-              std::fill_n(image.row(y) + x * image.channels(), image.channels(), T{0});
-            }
-          }
-        }
-      },
-      photograph.pixels);
+  std::visit([&](auto& image) { set_where(photograph.left_out, 0, image); }, photograph.pixels);
 }
 
-Mask of_either(Mask one, const Mask& other) {
-  if (one.empty()) {
-    return other.copy();
+Mask half_of(const Mask& left_out) {
+  if (left_out.empty()) {
+    return {};
   }
-  for (int y = 0; y < other.height(); ++y) {
-    std::transform(other.row(y), other.row(y) + other.width(), one.row(y), one.row(y),
-                   [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
-  }
-  return one;
-}
-
-void halve(const Mask& left_out, Execution& execution, Mask& half) {
-  half.resize((left_out.width() + 1) / 2, (left_out.height() + 1) / 2);
-  execution.for_each_row(half.height(), [&](int y) {
-    const std::uint8_t* const upper = left_out.row(2 * y);
-    const std::uint8_t* const lower = left_out.row(std::min(2 * y + 1, left_out.height() - 1));
+  cv::Mat eroded;  // the least of a pixel and those right of and below it
+  cv::erode(as_mat<std::uint8_t>(left_out.view()), eroded, cv::Mat::ones(2, 2, CV_8U), {0, 0});
+  Mask half((left_out.width() + 1) / 2, (left_out.height() + 1) / 2);
+  for (int y = 0; y < half.height(); ++y) {
     for (int x = 0; x < half.width(); ++x) {
-      const int right = std::min(2 * x + 1, left_out.width() - 1);
-      half.at(x, y) = upper[2 * x] & upper[right] & lower[2 * x] & lower[right];
+      half.at(x, y) = eroded.at<std::uint8_t>(2 * y, 2 * x);
     }
-  });
+  }
+  return half;
 }
 
-void erase_left_out(const Mask& left_out, Execution& execution, MatchedMap& map) {
-  erase(left_out, kNaN, execution, map.disparity_px);
-  erase(left_out, kNaN, execution, map.disparity_y_px);
-  erase(left_out, kNaN, execution, map.confidence);
-  erase(left_out, kSet, execution, map.unmatched);
+void erase_left_out(const Mask& left_out, Image<float>& values) {
+  set_where(left_out, std::numeric_limits<double>::quiet_NaN(), values);
 }
 
-void erase_left_out(const Mask& left_out, Execution& execution, Image<float>& values) {
-  erase(left_out, kNaN, execution, values);
+void erase_left_out(const Mask& left_out, MatchedMap& map) {
+  erase_left_out(left_out, map.disparity_px);
+  erase_left_out(left_out, map.disparity_y_px);
+  erase_left_out(left_out, map.confidence);
+  set_where(left_out, kSet, map.unmatched);
 }
 
 void mark_left_out(const Mask& own, const Mask& other, Side side, float columns_per_px,
@@ -157,12 +140,8 @@ void mark_left_out(const Mask& own, const Mask& other, Side side, float columns_
 }
 
 double share_of(const Mask& mask) {
-  double set = 0;
-  for (int y = 0; y < mask.height(); ++y) {
-    set +=
-        static_cast<double>(mask.width() - std::count(mask.row(y), mask.row(y) + mask.width(), 0));
-  }
-  return mask.empty() ? 0 : set / (static_cast<double>(mask.width()) * mask.height());
+  const double pixels = static_cast<double>(mask.width()) * mask.height();
+  return mask.empty() ? 0 : cv::countNonZero(as_mat<std::uint8_t>(mask.view())) / pixels;
 }
 
 }  // namespace vantage

@@ -9,28 +9,24 @@
 namespace vantage {
 
 // Pixels that show no scene, Photograph::left_out: 255 where a mask, a rectification or the black
-// border of a film says so. All are identical for any `execution`; the others work in the calling
-// thread.
+// border of a film says so. Thread rule: pure.
 
 /// Marks pixels and gives them values that matching cannot take for texture, and that no filter can
 /// spread: those of the nearest other pixel of their row, the left one of two; rows without such
 /// pixels those of the nearest row that has some, the upper one of two. So maps do not depend on
 /// what was there. Only marks them where no pixel is left. `left_out`: of the photograph's size, or
-/// empty, which says that all pixels show the scene.
+/// empty; one without a marked pixel counts as empty.
 void leave_out(Photograph& photograph, Mask left_out);
 
 /// 0 in all channels where a pixel is left out, which files have instead of a mask.
 void blacken_left_out(Photograph& photograph);
 
-/// Marks the pixels of either mask; either may be empty.
-Mask of_either(Mask one, const Mask& other);
-
 /// The pixels of a picture of half the size, rounded up, of whose 2×2 pixels none shows the scene.
-void halve(const Mask& left_out, Execution& execution, Mask& half);
+Mask half_of(const Mask& left_out);
 
 /// Unknown, and unmatched, where `left_out` is set. An empty mask, or image of the map, is none.
-void erase_left_out(const Mask& left_out, Execution& execution, MatchedMap& map);
-void erase_left_out(const Mask& left_out, Execution& execution, Image<float>& values);
+void erase_left_out(const Mask& left_out, MatchedMap& map);
+void erase_left_out(const Mask& left_out, Image<float>& values);
 
 /// Also marks as unmatched what is left out, and what leads to a pixel of the other image that is.
 /// Winners before refinement; unknown ones lead nowhere. columns_per_px: as of cross_check().

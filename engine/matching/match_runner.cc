@@ -185,7 +185,7 @@ void MatchRunner::erase_left_out(const MatchCall& call, DisparityMaps& maps,
   for (std::size_t i = 0; i < (call.baselines.empty() ? 2U : 1U); ++i) {
     const Mask& left_out = call.images[i].photograph->left_out;
     const Side side = i == 0 ? call.reference_side : other_side(call.reference_side);
-    vantage::erase_left_out(left_out, execution_, maps.of(side));
+    vantage::erase_left_out(left_out, maps.of(side));
     if (!left_out.empty()) {
       const double percent = std::max(0.1, 100 * share_of(left_out));
       shares.push_back(fmt::format("{:.{}f} % of the {} image", percent, percent < 1 ? 1 : 0,

@@ -21,7 +21,7 @@ ResolvedMatchOptions checked(const MatchOptions& options) {
 
 MatchCall pair_call(const Photograph& left, const Photograph& right) {
   require_equal_sizes(left, "left image", right, "right image");
-  return {.images = {{&left}, {&right}}};
+  return {.images = {{&left}, {&right, 1}}};
 }
 
 MatchCall several_call(const Photograph& reference, std::span<const OtherView> others) {
@@ -37,29 +37,26 @@ MatchCall several_call(const Photograph& reference, std::span<const OtherView> o
   return call;
 }
 
+std::vector<double> places_of(const MatchCall& call) {
+  std::vector<double> places;
+  for (const SearchedPhotograph& image : call.images) {
+    places.push_back(image.place);
+  }
+  return places;
+}
+
 /// A call with parts of the images of `whole`.
 struct CallOfPart {
-  CallOfPart(const MatchCall& whole, const ResolvedMatchOptions& options, Execution& execution)
+  CallOfPart(const MatchCall& whole, const ResolvedMatchOptions& options)
       : part(options,
              {whole.images.front().photograph->width(), whole.images.front().photograph->height()},
              places_of(whole), whole.reference_side),
         call(whole) {
     photographs.reserve(whole.images.size());
     for (SearchedPhotograph& image : call.images) {
-      photographs.push_back(part.of(*image.photograph, execution));
+      photographs.push_back(part.of(*image.photograph));
       image.photograph = &photographs.back();
     }
-  }
-
-  static std::vector<double> places_of(const MatchCall& whole) {
-    if (whole.baselines.empty()) {
-      return {0, 1};
-    }
-    std::vector<double> places;
-    for (const SearchedPhotograph& image : whole.images) {
-      places.push_back(image.place);
-    }
-    return places;
   }
 
   MatchedPart part;
@@ -105,7 +102,7 @@ void StereoMatcher::run(const MatchCall& call, const MatchRequest& request, Disp
   if (!request.volumes.empty()) {
     throw UsageError("there is a volume with roi or scale, expected one of whole images");
   }
-  const CallOfPart part(call, in_force_, execution_);
+  const CallOfPart part(call, in_force_);
   const DisparityMap left_prior_px = part.part.of_prior(request.prior.left_px);
   const DisparityMap right_prior_px = part.part.of_prior(request.prior.right_px);
   MatchRequest request_of_part = request;
@@ -119,17 +116,15 @@ void StereoMatcher::run(const MatchCall& call, const MatchRequest& request, Disp
   for (const Side side : {Side::kLeft, Side::kRight}) {
     if (!is_left_for_later && (is_pair ? request.wants(side) : side == call.reference_side)) {
       const std::size_t image = is_pair ? index_of(side) : 0;
-      part.part.bring_back(found.of(side), part.photographs[image], image,
-                           *call.images[image].photograph, execution_, maps.of(side));
+      part.part.bring_back(found.of(side), image, *call.images[image].photograph, maps.of(side));
     }
   }
 }
 
 std::vector<scheduler::ChainPlan> StereoMatcher::plans(
     const MatchCall& call, std::span<const ExecutionOptions> executions) const {
-  return in_force_.is_of_part()
-             ? runner_->plans(CallOfPart(call, in_force_, execution_).call, executions)
-             : runner_->plans(call, executions);
+  return in_force_.is_of_part() ? runner_->plans(CallOfPart(call, in_force_).call, executions)
+                                : runner_->plans(call, executions);
 }
 
 scheduler::ChainPlan StereoMatcher::plan(const Photograph& left, const Photograph& right) const {

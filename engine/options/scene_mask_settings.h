@@ -1,6 +1,6 @@
 #pragma once
 
-#include "engine/image/scene_mask.h"
+#include "engine/io/images/scene_mask.h"
 #include "engine/options/settings.h"
 
 namespace vantage {

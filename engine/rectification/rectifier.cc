@@ -4,11 +4,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -39,8 +37,7 @@ Rectifier::View Rectifier::make_view(const Camera& camera, Side side) const {
   View view{.lens = LensModel(camera),
             .ray_from_pixel = rectified.rotation.transpose() * rectified.matrix.inverse(),
             .x_px = {},
-            .y_px = {},
-            .unseen = {}};
+            .y_px = {}};
   if (!needs_rectification_) {
     return view;
   }
@@ -55,44 +52,7 @@ Rectifier::View Rectifier::make_view(const Camera& camera, Side side) const {
       view.y_px.at(x, y) = position ? static_cast<float>(position->y()) : kUnseen;
     }
   }
-  Mask unseen(pair_.width_px, pair_.height_px);
-  for (int y = 0; y < pair_.height_px; ++y) {
-    for (int x = 0; x < pair_.width_px; ++x) {
-      unseen.at(x, y) = nearest_pixel(view, x, y) ? 0 : 255;
-    }
-  }
-  if (share_of(unseen) > 0) {
-    view.unseen = std::move(unseen);
-  }
   return view;
-}
-
-/// The pixel of the photograph nearest to a rectified one; none: it shows nothing there.
-std::optional<std::array<int, 2>> Rectifier::nearest_pixel(const View& view, int x, int y) const {
-  const float column = std::floor(view.x_px.at(x, y) + 0.5F);
-  const float row = std::floor(view.y_px.at(x, y) + 0.5F);
-  const bool is_seen = column >= 0 && column < static_cast<float>(photograph_size_.width_px) &&
-                       row >= 0 && row < static_cast<float>(photograph_size_.height_px);
-  return is_seen ? std::optional(std::array{static_cast<int>(column), static_cast<int>(row)})
-                 : std::nullopt;
-}
-
-Mask Rectifier::left_out_of(const Photograph& source, Side side) const {
-  if (!needs_rectification_) {
-    return source.left_out.copy();
-  }
-  Mask left_out = view(side).unseen.copy();
-  if (source.left_out.empty()) {
-    return left_out;
-  }
-  left_out.resize(pair_.width_px, pair_.height_px);
-  for (int y = 0; y < pair_.height_px; ++y) {
-    for (int x = 0; x < pair_.width_px; ++x) {
-      const auto at = nearest_pixel(view(side), x, y);
-      left_out.at(x, y) = at ? source.left_out.at((*at)[0], (*at)[1]) : 255;
-    }
-  }
-  return left_out;
 }
 
 std::optional<Eigen::Vector2d> Rectifier::source_position(const View& view,
@@ -121,6 +81,28 @@ std::optional<Eigen::Vector2d> Rectifier::rectified_position(
   return point.z() > 0 ? std::optional<Eigen::Vector2d>(point.hnormalized()) : std::nullopt;
 }
 
+/// Of the rectified image; pixels of the source are those nearest to positions.
+Mask Rectifier::left_out_of(const Photograph& source, Side side, Execution& execution) const {
+  if (!needs_rectification_) {
+    return source.left_out.copy();
+  }
+  const auto [x_px, y_px] = source_positions(side);
+  Mask left_out(pair_.width_px, pair_.height_px);
+  execution.for_each_row(left_out.height(), [&](int y) {
+    for (int x = 0; x < left_out.width(); ++x) {
+      const float column = std::floor(x_px.at(x, y) + 0.5F);
+      const float row = std::floor(y_px.at(x, y) + 0.5F);
+      const bool is_seen = column >= 0 && column < static_cast<float>(source.width()) && row >= 0 &&
+                           row < static_cast<float>(source.height());
+      left_out.at(x, y) = !is_seen ? 255
+                          : source.left_out.empty()
+                              ? 0
+                              : source.left_out.at(static_cast<int>(column), static_cast<int>(row));
+    }
+  });
+  return left_out;
+}
+
 void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
                       Execution& execution) const {
   const int width = pair_.width_px;
@@ -145,7 +127,7 @@ void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
         });
       },
       source.pixels);
-  leave_out(result, left_out_of(source, side));
+  leave_out(result, left_out_of(source, side, execution));
 }
 
 Photograph undistorted(Photograph source, const Camera& lens, Execution& execution) {

@@ -28,7 +28,7 @@ struct PhotographPositions {
 /// everything may be called concurrently.
 class Rectifier {
  public:
-  /// For images of this size. Throws as rectified_pair() does. Takes 9 bytes per pixel and image,
+  /// For images of this size. Throws as rectified_pair() does. Takes 8 bytes per pixel and image,
   /// about 0.1 µs per pixel.
   Rectifier(const StereoCalibration& calibration, int width_px, int height_px,
             const RectificationOptions& options = {});
@@ -64,12 +64,8 @@ class Rectifier {
     Eigen::Matrix3d ray_from_pixel;  ///< ray of the camera ← rectified pixel, homogeneous
     Image<float> x_px;               ///< position of each rectified pixel; NaN = not seen
     Image<float> y_px;
-    Mask unseen;  ///< empty: the camera sees all
   };
-  [[nodiscard]] std::optional<std::array<int, 2>> nearest_pixel(const View& view, int x,
-                                                                int y) const;
-  [[nodiscard]] Mask left_out_of(const Photograph& source, Side side) const;
-
+  [[nodiscard]] Mask left_out_of(const Photograph& source, Side side, Execution& execution) const;
   [[nodiscard]] View make_view(const Camera& camera, Side side) const;
   [[nodiscard]] static std::optional<Eigen::Vector2d> source_position(
       const View& view, const Eigen::Vector2d& rectified_px);

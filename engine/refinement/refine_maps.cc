@@ -52,6 +52,11 @@ void check_against_partners(const MapToRefine& to_refine, double tolerance_px, E
   }
 }
 
+const Mask& left_out_of(const MapToRefine* map) {
+  static const Mask none;
+  return map != nullptr && map->image != nullptr ? map->image->left_out : none;
+}
+
 /// Samples of medians, in columns of the map.
 kernels::FilledMedianGrid median_grid(const MapToRefine& map) {
   return map.pixels_per_column == 1 ? kernels::FilledMedianGrid{}
@@ -173,11 +178,8 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
     }
   }
   for (const MapToRefine* one : maps) {
-    const MapToRefine* const partner = one == &map ? other : &map;
-    static const Mask kNone;
-    mark_left_out(one->image->left_out, partner != nullptr ? partner->image->left_out : kNone,
-                  one->side, 1.0F / static_cast<float>(one->pixels_per_column), execution,
-                  *one->map);
+    mark_left_out(left_out_of(one), left_out_of(one == &map ? other : &map), one->side,
+                  1.0F / static_cast<float>(one->pixels_per_column), execution, *one->map);
   }
   if (uses_confidence(options)) {
     start_step("confidence");

@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
 #include <string_view>
 
 #include "engine/build_info.h"
@@ -13,7 +11,6 @@
 #include "engine/matching/costs/cost_table.h"
 #include "engine/matching/levels/energy_format.h"
 #include "engine/matching/options/method_names.h"
-#include "engine/matching/region/matched_part.h"
 #include "engine/simd.h"
 #include "engine/thread_placement.h"
 
@@ -110,18 +107,11 @@ TuningKey make_tuning_key(const scheduler::Machine& machine, const MatchOptions&
     key.threads += fmt::format(", bound to {}", name_of(*execution.binding));
   }
   key.method = method_text(match, images);
-  const ResolvedMatchOptions in_force = options_of_part(match);
-  const std::optional<DisparityRange>& down = in_force.disparities_y;
-  const int candidates =
-      candidate_count(in_force.disparities, in_force.parameters) * (down ? down->count() : 1);
-  const ImageRegion whole{0, 0, images.width_px, images.height_px};
-  const ImageRegion region = match.roi.value_or(whole);
-  const auto class_of_side = [&](int side_px) {
-    return class_of(std::max(1, static_cast<int>(side_px * match.scale)), kRootsOfTwo);
-  };
-  key.size = fmt::format("about {}x{} pixels, {} {}", class_of_side(region.width_px),
-                         class_of_side(region.height_px), class_of(candidates, kRootsOfTwo),
-                         down ? "displacements" : "disparities");
+  const int candidates = candidate_count(match.disparities, match.resolved()) *
+                         (match.disparities_y ? match.disparities_y->count() : 1);
+  key.size = fmt::format("about {}x{} pixels, {} {}", class_of(images.width_px, kRootsOfTwo),
+                         class_of(images.height_px, kRootsOfTwo), class_of(candidates, kRootsOfTwo),
+                         match.disparities_y ? "displacements" : "disparities");
   key.version = build_info().version;
   return key;
 }

@@ -1,6 +1,5 @@
 #include "engine/matching/region/matched_part.h"
 
-#include "engine/image/area_average.h"
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/random_grey.h"
@@ -107,26 +106,6 @@ TEST(Region, IsRefusedOutsideTheImagesAndWithVolumes) {
   options.scale = 0.5;
   const std::array<VolumeRequest, 1> volumes = {};
   EXPECT_THROW(StereoMatcher(options).match(image, image, {.volumes = volumes}, maps), UsageError);
-}
-
-TEST(AreaAverage, IsTheMeanOfTheCoveredArea) {
-  Image<float> image(7, 5, 3);
-  for (const auto [x, y] : positions_of(7, 5)) {
-    for (int c = 0; c < 3; ++c) {
-      image.at(x, y, c) = static_cast<float>((x * 31 + y * 17 + c * 5) % 23);
-    }
-  }
-  const Photograph reduced = area_average(std::as_const(image).view(), 3, 2, default_execution());
-  const auto& pixels = std::get<Image<float>>(reduced.pixels);
-  // From 6 × 6 parts of each pixel, none of which two reduced pixels share.
-  constexpr int kParts = 6;
-  for (const auto [x, y] : positions_of(3, 2)) {
-    double sum = 0;
-    for (const auto [i, j] : positions_of(7 * kParts / 3, 5 * kParts / 2)) {
-      sum += image.at((x * 7 * kParts / 3 + i) / kParts, (y * 5 * kParts / 2 + j) / kParts, 1);
-    }
-    EXPECT_NEAR(pixels.at(x, y, 1), sum / (14 * 15), 1e-5);
-  }
 }
 
 /// A plane behind a square that is nearer, of smooth texture.

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "engine/generation/layered_scene.h"
+#include "engine/image/left_out.h"
 #include "tests/engine/calibration_cases.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/every_execution.h"
@@ -59,6 +60,7 @@ TYPED_TEST(RectifiedImages, AreThePhotographSeenThroughTheModel) {
         const Photograph source = noise<T>(width, height, channels, 7);
         Photograph result;
         rectifier.apply(source, side, result, execution());
+        blacken_left_out(result);
         ASSERT_EQ(result.width(), width);
         ASSERT_EQ(result.height(), height);
         ASSERT_EQ(result.channels(), channels);
@@ -128,6 +130,7 @@ TEST(Rectifier, AlphaIsOpaqueInsideAndNothingOutside) {
   }
   Photograph result;
   rectifier.apply(source, Side::kLeft, result, execution());
+  blacken_left_out(result);
   const auto& image = std::get<Image<std::uint8_t>>(result.pixels);
   const PixelRectangle& valid = rectifier.pair().valid;
   int outside = 0;

@@ -3,18 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "engine/error.h"
-#include "engine/image/area_average.h"
-#include "engine/image/intensity_rows.h"
 #include "engine/image/left_out.h"
 #include "kernels/map_enlargement/map_enlargement.h"
 
@@ -55,22 +52,37 @@ ImageView<T> cut(ImageView<T> image, const Region& pixels) {
           pixels.columns.size(), pixels.rows.size(), image.channels(), image.stride()};
 }
 
-/// The pixels of a shorter line around those of a line.
-struct Neighbours {
-  int near = 0;    ///< the one that covers the pixel
-  int beside = 0;  ///< the other one
-  float weight_beside = 0;
-};
+/// Pixels of constant images are only read.
+template <typename T>
+cv::Mat wrap(ImageView<const T> image) {
+  return {image.height(), image.width(), CV_MAKETYPE(cv::DataType<T>::depth, image.channels()),
+          const_cast<T*>(image.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+          image.stride() * sizeof(T)};
+}
 
-std::vector<Neighbours> neighbours_of(int pixels, int reduced_pixels) {
-  const double ratio = static_cast<double>(reduced_pixels) / pixels;
-  std::vector<Neighbours> result;
-  for (int i = 0; i < pixels; ++i) {
-    const double centre = (i + 0.5) * ratio - 0.5;
-    const int near = std::clamp(static_cast<int>(std::floor(centre + 0.5)), 0, reduced_pixels - 1);
-    const int beside = std::clamp(near + (centre < near ? -1 : 1), 0, reduced_pixels - 1);
-    result.push_back(
-        {near, beside, beside == near ? 0.0F : static_cast<float>(std::abs(centre - near))});
+template <typename T>
+Image<T> resized(ImageView<const T> image, scheduler::Extent extent, int interpolation) {
+  Image<T> result(extent.columns, extent.rows, image.channels());
+  const cv::Mat target = wrap<T>(result.view());
+  cv::resize(wrap(image), target, target.size(), 0, 0, interpolation);
+  return result;
+}
+
+/// Linear within surfaces; at jumps a pixel takes the disparity of the one that covers it.
+/// Values stay in `range`, which that of reduced pixels exceeds by rounding.
+DisparityMap enlarged(const DisparityMap& map_px, scheduler::Extent extent, float px_per_px,
+                      DisparityRange range) {
+  DisparityMap result = resized<float>(map_px.view(), extent, cv::INTER_NEAREST);
+  const DisparityMap linear = resized<float>(map_px.view(), extent, cv::INTER_LINEAR);
+  constexpr float kSurfacePx = 0.5F * kernels::kEnlargedSurfaceStepPx;
+  for (int y = 0; y < extent.rows; ++y) {
+    std::transform(result.row(y), result.row(y) + extent.columns, linear.row(y), result.row(y),
+                   [&](float nearest, float between) {
+                     const bool is_surface = std::abs(between - nearest) <= kSurfacePx;
+                     return std::clamp(px_per_px * (is_surface ? between : nearest),
+                                       static_cast<float>(range.min),
+                                       static_cast<float>(range.max));
+                   });
   }
   return result;
 }
@@ -89,7 +101,9 @@ ResolvedMatchOptions options_of_part(MatchOptions options) {
 
 MatchedPart::MatchedPart(const ResolvedMatchOptions& options, scheduler::Extent images,
                          std::span<const double> places, Side reference)
-    : range_(options.disparities), range_y_(options.disparities_y), images_(images) {
+    : range_(options.disparities),
+      range_y_(options.disparities_y.value_or(DisparityRange{0, 0})),
+      images_(images) {
   const Region all{images.all_columns(), images.all_rows()};
   Region region = all;
   if (options.roi) {
@@ -103,10 +117,8 @@ MatchedPart::MatchedPart(const ResolvedMatchOptions& options, scheduler::Extent 
   cut_ = region;
   for (const double place : places) {
     const double direction = reference == Side::kLeft ? place : -place;
-    const Region partners{
-        partners_of(region.columns, options.disparities, direction, all.columns),
-        partners_of(region.rows, options.disparities_y.value_or(DisparityRange{0, 0}), direction,
-                    all.rows)};
+    const Region partners{partners_of(region.columns, options.disparities, direction, all.columns),
+                          partners_of(region.rows, range_y_, direction, all.rows)};
     wanted_.push_back(partners);
     cut_ = {{std::min(cut_.columns.begin, partners.columns.begin),
              std::max(cut_.columns.end, partners.columns.end)},
@@ -117,140 +129,67 @@ MatchedPart::MatchedPart(const ResolvedMatchOptions& options, scheduler::Extent 
   extent_ = {reduced(cut_.columns.size(), options.scale), reduced(cut_.rows.size(), options.scale)};
 }
 
-Photograph MatchedPart::of(const Photograph& photograph, Execution& execution) const {
+Photograph MatchedPart::of(const Photograph& photograph) const {
   const bool is_smaller = extent_ != scheduler::Extent{cut_.columns.size(), cut_.rows.size()};
-  Photograph result = std::visit(
-      [&]<typename T>(const Image<T>& image) {
-        const ImageView<const T> pixels = cut(image.view(), cut_);
-        return is_smaller ? area_average(pixels, extent_.columns, extent_.rows, execution)
-                          : Photograph{Image<T>::borrowed(pixels), photograph.origin};
-      },
-      photograph.pixels);
-  if (photograph.left_out.empty()) {
-    return result;
+  const auto part_of = [&]<typename T>(const Image<T>& image) {
+    const ImageView<const T> pixels = cut(image.view(), cut_);
+    return is_smaller ? resized(pixels, extent_, cv::INTER_AREA) : Image<T>::borrowed(pixels);
+  };
+  Photograph result =
+      std::visit([&](const auto& image) { return Photograph{part_of(image)}; }, photograph.pixels);
+  if (!is_smaller) {
+    result.origin = photograph.origin;
   }
-  const ImageView<const std::uint8_t> left_out = cut(photograph.left_out.view(), cut_);
-  if (is_smaller) {
-    // 255 where nothing of the area shows the scene: the mean is rounded to it within half a level.
-    result.left_out = std::move(
-        std::get<Mask>(area_average(left_out, extent_.columns, extent_.rows, execution).pixels));
-    execution.for_each_row(extent_.rows, [&](int y) {
-      for (int x = 0; x < extent_.columns; ++x) {
-        std::uint8_t& share = result.left_out.at(x, y);
-        share = share == 255 ? 255 : 0;
-      }
-    });
-  } else {
-    result.left_out = Mask::borrowed(left_out);
+  if (!photograph.left_out.empty()) {
+    result.left_out = part_of(photograph.left_out);
+  }
+  if (is_smaller && !photograph.left_out.empty()) {
+    // Of an area that is left out in part, the rest still shows the scene.
+    const cv::Mat share = wrap<std::uint8_t>(result.left_out.view());
+    cv::threshold(share, share, kUnmatched - 1, kUnmatched, cv::THRESH_BINARY);
   }
   return result;
 }
 
 DisparityMap MatchedPart::of_prior(ImageView<const float> map_px) const {
   DisparityMap result;
-  if (map_px.empty()) {
-    return result;
-  }
-  const ImageView<const float> pixels = cut(map_px, cut_);
-  result.resize(extent_.columns, extent_.rows);
-  const float ratio = static_cast<float>(extent_.columns) / static_cast<float>(pixels.width());
-  for (int y = 0; y < extent_.rows; ++y) {
-    for (int x = 0; x < extent_.columns; ++x) {
-      const auto at = [](int i, int count, int of) {
-        return static_cast<int>((static_cast<long long>(2) * i + 1) * of / (2LL * count));
-      };
-      result.at(x, y) = ratio * pixels.at(at(x, extent_.columns, pixels.width()),
-                                          at(y, extent_.rows, pixels.height()));
-    }
+  if (!map_px.empty()) {
+    result = resized(cut(map_px, cut_), extent_, cv::INTER_NEAREST);
+    wrap<float>(result.view()) *= extent_.columns / static_cast<double>(cut_.columns.size());
   }
   return result;
 }
 
-void MatchedPart::bring_back(const MatchedMap& map_of_part, const Photograph& matched,
-                             std::size_t index, const Photograph& image, Execution& execution,
-                             MatchedMap& map) const {
-  const auto start = [&]<typename T>(const Image<T>& of_part, T unknown, Image<T>& whole) {
-    if (of_part.empty()) {
-      whole.resize(0, 0);
-      return;
-    }
-    whole.resize(images_.columns, images_.rows);
+void MatchedPart::bring_back(const MatchedMap& map_of_part, std::size_t index,
+                             const Photograph& image, MatchedMap& map) const {
+  const scheduler::Extent extent{cut_.columns.size(), cut_.rows.size()};
+  const Region& wanted = wanted_[index];
+  // The wanted pixels of `of_cut`, in the whole image.
+  const auto place = [&]<typename T>(const Image<T>& of_cut, T unknown, Image<T>& whole) {
+    whole.resize(of_cut.empty() ? 0 : images_.columns, of_cut.empty() ? 0 : images_.rows);
     whole.fill(unknown);
-  };
-  start(map_of_part.disparity_px, kNaN, map.disparity_px);
-  start(map_of_part.disparity_y_px, kNaN, map.disparity_y_px);
-  start(map_of_part.confidence, kNaN, map.confidence);
-  start(map_of_part.unmatched, kUnmatched, map.unmatched);
-  enlarge(map_of_part, matched, image, wanted_[index], execution, map);
-  erase_left_out(image.left_out, execution, map);
-}
-
-void MatchedPart::enlarge(const MatchedMap& map_of_part, const Photograph& matched,
-                          const Photograph& image, const Region& wanted, Execution& execution,
-                          MatchedMap& map) const {
-  const std::vector<Neighbours> columns = neighbours_of(cut_.columns.size(), extent_.columns);
-  const std::vector<Neighbours> rows = neighbours_of(cut_.rows.size(), extent_.rows);
-  const float px_per_column =
-      static_cast<float>(cut_.columns.size()) / static_cast<float>(extent_.columns);
-  const float px_per_row = static_cast<float>(cut_.rows.size()) / static_cast<float>(extent_.rows);
-  execution.for_each_band(wanted.rows.size(), [&](int first_row, int end_row) {
-    std::vector<float> grey(static_cast<std::size_t>(images_.columns));
-    std::array<std::vector<float>, 2> grey_of_part;
-    grey_of_part.fill(std::vector<float>(static_cast<std::size_t>(extent_.columns)));
-    for (int y = wanted.rows.begin + first_row; y < wanted.rows.begin + end_row; ++y) {
-      const Neighbours& row = rows[static_cast<std::size_t>(y - cut_.rows.begin)];
-      intensity_row(image, y, grey.data());
-      intensity_row(matched, row.near, grey_of_part[0].data());
-      intensity_row(matched, row.beside, grey_of_part[1].data());
-      for (int x = wanted.columns.begin; x < wanted.columns.end; ++x) {
-        const Neighbours& column = columns[static_cast<std::size_t>(x - cut_.columns.begin)];
-        const float own = grey[static_cast<std::size_t>(x)];
-        const auto value = [&](const DisparityMap& of_part, float px, DisparityRange range) {
-          const float near = of_part.at(column.near, row.near);
-          const std::array<float, 3> others = {of_part.at(column.beside, row.near),
-                                               of_part.at(column.near, row.beside),
-                                               of_part.at(column.beside, row.beside)};
-          const bool is_surface = std::ranges::all_of(others, [&](float other) {
-            return std::abs(other - near) <= kernels::kEnlargedSurfaceStepPx;
-          });
-          float best = near;
-          if (is_surface) {
-            const float w = column.weight_beside;
-            const float above = near + w * (others[0] - near);
-            const float below = others[1] + w * (others[2] - others[1]);
-            best = above + row.weight_beside * (below - above);
-          } else if (std::isfinite(near)) {
-            const auto contrast = [&](int part_column, std::size_t part_row) {
-              return std::abs(grey_of_part[part_row][static_cast<std::size_t>(part_column)] - own);
-            };
-            const std::array<float, 3> contrasts = {
-                contrast(column.beside, 0), contrast(column.near, 1), contrast(column.beside, 1)};
-            float least =
-                contrast(column.near, 0) - static_cast<float>(kernels::kEnlargedPreference);
-            for (std::size_t i = 0; i < others.size(); ++i) {
-              if (std::isfinite(others[i]) && contrasts[i] < least) {
-                least = contrasts[i];
-                best = others[i];
-              }
-            }
-          }
-          // NaN stays as it is.
-          return std::clamp(px * best, static_cast<float>(range.min),
-                            static_cast<float>(range.max));
-        };
-        map.disparity_px.at(x, y) = value(map_of_part.disparity_px, px_per_column, range_);
-        if (!map.disparity_y_px.empty()) {
-          map.disparity_y_px.at(x, y) = value(map_of_part.disparity_y_px, px_per_row, *range_y_);
-        }
-        if (!map.confidence.empty()) {
-          map.confidence.at(x, y) = map_of_part.confidence.at(column.near, row.near);
-        }
-        if (!map.unmatched.empty()) {
-          map.unmatched.at(x, y) = map_of_part.unmatched.at(column.near, row.near);
-        }
-      }
+    for (int y = wanted.rows.begin; y < (of_cut.empty() ? 0 : wanted.rows.end); ++y) {
+      std::copy_n(of_cut.row(y - cut_.rows.begin) + wanted.columns.begin - cut_.columns.begin,
+                  wanted.columns.size(), whole.row(y) + wanted.columns.begin);
     }
-  });
+  };
+  const auto place_disparities = [&](const DisparityMap& of_part, double px_per_px,
+                                     DisparityRange range, DisparityMap& whole) {
+    place(of_part.empty() ? DisparityMap()
+                          : enlarged(of_part, extent, static_cast<float>(px_per_px), range),
+          kNaN, whole);
+  };
+  const auto place_nearest = [&]<typename T>(const Image<T>& of_part, T unknown, Image<T>& whole) {
+    place(of_part.empty() ? Image<T>() : resized<T>(of_part.view(), extent, cv::INTER_NEAREST),
+          unknown, whole);
+  };
+  place_disparities(map_of_part.disparity_px, static_cast<double>(extent.columns) / extent_.columns,
+                    range_, map.disparity_px);
+  place_disparities(map_of_part.disparity_y_px, static_cast<double>(extent.rows) / extent_.rows,
+                    range_y_, map.disparity_y_px);
+  place_nearest(map_of_part.confidence, kNaN, map.confidence);
+  place_nearest(map_of_part.unmatched, kUnmatched, map.unmatched);
+  erase_left_out(image.left_out, map);
 }
 
 }  // namespace vantage

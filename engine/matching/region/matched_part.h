@@ -1,11 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
-#include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
 #include "engine/image/image_region.h"
 #include "engine/image/photograph.h"
@@ -33,22 +31,18 @@ class MatchedPart {
   /// The size of what is matched.
   [[nodiscard]] scheduler::Extent extent() const { return extent_; }
   /// What is matched of an image, which must outlive it.
-  [[nodiscard]] Photograph of(const Photograph& photograph, Execution& execution) const;
+  [[nodiscard]] Photograph of(const Photograph& photograph) const;
   /// The same of a prior. Empty: none.
   [[nodiscard]] DisparityMap of_prior(ImageView<const float> map_px) const;
 
-  /// Makes the map of `image`, number `index` of the call, of that of its part `matched`:
-  /// disparities in its own pixels, linear within surfaces; at jumps a pixel takes the disparity of
-  /// the neighbour that looks like it (EQUATIONS §5.8). Unknown, and unmatched, outside the region.
-  void bring_back(const MatchedMap& map_of_part, const Photograph& matched, std::size_t index,
-                  const Photograph& image, Execution& execution, MatchedMap& map) const;
+  /// Makes the map of `image`, number `index` of the call, of that of its part: disparities in its
+  /// own pixels, linear within surfaces. Unknown, and unmatched, outside the region.
+  void bring_back(const MatchedMap& map_of_part, std::size_t index, const Photograph& image,
+                  MatchedMap& map) const;
 
  private:
-  void enlarge(const MatchedMap& map_of_part, const Photograph& matched, const Photograph& image,
-               const scheduler::Region& wanted, Execution& execution, MatchedMap& map) const;
-
   DisparityRange range_;
-  std::optional<DisparityRange> range_y_;
+  DisparityRange range_y_;
   scheduler::Extent images_;
   scheduler::Region cut_;
   scheduler::Extent extent_;

@@ -62,9 +62,9 @@ void PosteriorMoments::write(int x, int y, int columns, const float* values) {
   }
 }
 
-void PosteriorMoments::erase(const Mask& left_out, Execution& execution) {
-  erase_left_out(left_out, execution, mean_px_);
-  erase_left_out(left_out, execution, variance_px2_);
+void PosteriorMoments::erase(const Mask& left_out) {
+  erase_left_out(left_out, mean_px_);
+  erase_left_out(left_out, variance_px2_);
 }
 
 }  // namespace vantage

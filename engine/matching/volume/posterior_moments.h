@@ -1,6 +1,5 @@
 #pragma once
 
-#include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/volume_sink.h"
 
@@ -19,7 +18,7 @@ class PosteriorMoments final : public VolumeSink {
   void write(int x, int y, int columns, const float* values) override;
 
   /// Makes pixels unknown (image/left_out.h), once all is written.
-  void erase(const Mask& left_out, Execution& execution);
+  void erase(const Mask& left_out);
 
   /// Of the size of the level; NaN where no candidate has a probability. In pixels and pixels².
   [[nodiscard]] const Image<float>& mean_px() const { return mean_px_; }

@@ -50,7 +50,7 @@ void ReducedImages::prepare(const Photograph& photograph, int reductions, Execut
   for (std::size_t i = 0; i < levels.size(); ++i) {
     images_[i].pixels = std::move(levels[i]);
     if (i > 0) {
-      halve(i == 1 ? photograph.left_out : images_[i - 1].left_out, execution, images_[i].left_out);
+      images_[i].left_out = half_of(i == 1 ? photograph.left_out : images_[i - 1].left_out);
     }
   }
 }

@@ -10,7 +10,7 @@
 namespace vantage {
 
 EveryNthPair::EveryNthPair(std::unique_ptr<PairSource> source, int first, int step)
-    : source_(std::move(source)), first_(first), step_(step) {
+    : ForwardedPairs(std::move(source)), first_(first), step_(step) {
   const int all = source_->pair_count();
   if (first >= all) {
     throw Error(fmt::format("frames are taken from frame {} on, but the input has {} (0 to {})",

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -20,48 +19,48 @@ constexpr int kPairsApart = 48;
 
 MaskedPairs::MaskedPairs(std::unique_ptr<PairSource> source, SceneMaskOptions options,
                          bool each_alone)
-    : source_(std::move(source)),
+    : ForwardedPairs(std::move(source)),
       options_(std::move(options)),
       needs_borders_(options_.finds_borders() && !each_alone),
       each_alone_(each_alone) {
   for (const std::size_t i : {0, 1}) {
-    if (options_.file(i).empty()) {
+    const std::string file = options_.files()[i];
+    if (file.empty()) {
       continue;
     }
-    masks_[i] = open_frame_source(options_.file(i));
+    masks_[i] = open_frame_source(file);
     const int count = masks_[i]->frame_count();
     if (count != 1 && count < source_->input_frames() && !source_->is_stream()) {
-      throw Error(fmt::format("{} has {} masks, expected one, or one for each of {} pairs",
-                              options_.file(i), count, source_->input_frames()));
+      throw Error(fmt::format("{} has {} masks, expected one, or one for each of {} pairs", file,
+                              count, source_->input_frames()));
     }
   }
 }
 
-/// Only of what can be fetched again.
+void MaskedPairs::skip_to(int index) {
+  next_index_ = index;
+  source_->skip_to(index);
+}
+
+/// Of a stream only in its first pair.
 void MaskedPairs::find_borders() {
   needs_borders_ = false;
-  std::array<BrightestLevels, 2> levels;
+  std::array<Image<std::uint8_t>, 2> brightest;
   FramePair pair;
   const int count = source_->is_stream() ? 1 : source_->pair_count();
   for (int i = 0; i < kPairsLookedAt && i * kPairsApart < count; ++i) {
     try {
       source_->skip_to(source_->is_stream() ? next_index_ : i * kPairsApart);
-      if (!source_->fetch(pair)) {
-        break;
-      }
-      source_->decode(pair);
-      levels[0].add(pair.left);
-      levels[1].add(pair.right);
-      if (!may_have_black_border(pair.left) && !may_have_black_border(pair.right)) {
-        break;
+      if (source_->fetch(pair)) {
+        source_->decode(pair);
+        take_brightest(pair.left, brightest[0]);
+        take_brightest(pair.right, brightest[1]);
       }
     } catch (const Error&) {
       continue;  // the run itself reports bad frames
     }
   }
-  if (!levels[0].levels().empty() && !levels[1].levels().empty()) {
-    borders_ = black_borders(levels[0].levels(), levels[1].levels());
-  }
+  borders_ = {black_border(brightest[0]), black_border(brightest[1])};
   source_->skip_to(next_index_);
 }
 
@@ -87,23 +86,25 @@ void MaskedPairs::make_images(FramePair& pair) const {
   if (!pair.wants_right) {
     return;  // only its shot is looked for
   }
-  std::array<const Photograph*, 2> files = {};
+  std::array<Mask, 2> masks;
   for (const std::size_t i : {0, 1}) {
     if (masks_[i] != nullptr) {
       pair.masks[i].decode();
-      files[i] = &pair.masks[i].photograph;
+      masks[i] = black_pixels(pair.masks[i].photograph);
+    } else if (each_alone_ && options_.finds_borders()) {
+      masks[i] = black_border(i == 0 ? pair.left : pair.right);
+    } else {
+      masks[i] = borders_[i].copy();
     }
   }
-  leave_out_of_pair(options_, files, each_alone_ ? nullptr : &borders_, pair.left, pair.right);
+  leave_out_of_pair(options_, std::move(masks), pair.left, pair.right);
 }
 
 std::vector<std::filesystem::path> MaskedPairs::files() const {
   std::vector<std::filesystem::path> files = source_->files();
   for (const auto& mask : masks_) {
-    if (mask != nullptr) {
-      const std::vector<std::filesystem::path> more = mask->files();
-      files.insert(files.end(), more.begin(), more.end());
-    }
+    const auto more = mask != nullptr ? mask->files() : std::vector<std::filesystem::path>();
+    files.insert(files.end(), more.begin(), more.end());
   }
   return files;
 }

@@ -210,11 +210,8 @@ std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
   const bool is_film = options.stereo == "-" || !all->sound().file.empty();
   all->set_white_level(is_film && !options.white_level ? WhiteLevel()
                                                        : white_level_of(*all, options.white_level));
-  if (options.masks.is_active()) {
-    const bool are_photographs = !options.pairs.empty();
-    all = std::make_unique<MaskedPairs>(std::move(all), options.masks, are_photographs);
-  }
-  return all;
+  const bool are_photographs = !options.pairs.empty();
+  return std::make_unique<MaskedPairs>(std::move(all), options.masks, are_photographs);
 }
 
 }  // namespace vantage

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "engine/image/disparity_range.h"
-#include "engine/image/scene_mask.h"
 #include "engine/image/stereo_packing.h"
 #include "engine/image/white_level.h"
+#include "engine/io/images/scene_mask.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/raw_video_shape.h"
 #include "engine/rectification/kitti_cameras.h"

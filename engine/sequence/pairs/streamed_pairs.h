@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "engine/sequence/pairs/pair_source.h"
+#include "engine/sequence/pairs/forwarded_pairs.h"
 
 namespace vantage {
 
 /// The pairs of a source that goes forward only. The first ones are held, so that they can be
 /// looked at before they are processed: up to 16 and up to 256 MiB, at least one.
-class StreamedPairs final : public PairSource {
+class StreamedPairs final : public ForwardedPairs {
  public:
-  explicit StreamedPairs(std::unique_ptr<PairSource> source) : source_(std::move(source)) {}
+  explicit StreamedPairs(std::unique_ptr<PairSource> source) : ForwardedPairs(std::move(source)) {}
 
   bool fetch(FramePair& pair) override;
   /// The first pair that is fetched is the first that is held. Pairs before it are dropped.
@@ -25,26 +25,7 @@ class StreamedPairs final : public PairSource {
   }
   void forget_start() override { holds_ = false; }
 
-  [[nodiscard]] int pair_count() const override { return source_->pair_count(); }
-  [[nodiscard]] FrameRange pairs_of(FrameRange input_frames) const override {
-    return source_->pairs_of(input_frames);
-  }
-  [[nodiscard]] std::string describe(int index) const override { return source_->describe(index); }
-  [[nodiscard]] std::vector<std::string> remarks() const override { return source_->remarks(); }
-  [[nodiscard]] int unpaired_frames() const override { return source_->unpaired_frames(); }
-  [[nodiscard]] std::optional<FrameRate> frame_rate() const override {
-    return source_->frame_rate();
-  }
-  [[nodiscard]] Sound sound() const override { return source_->sound(); }
-  [[nodiscard]] std::vector<std::filesystem::path> files() const override {
-    return source_->files();
-  }
-  [[nodiscard]] std::vector<std::string> identities() const override {
-    return source_->identities();
-  }
-
  private:
-  void make_images(FramePair& pair) const override { source_->decode(pair); }
   /// What fetch() gave, or threw.
   struct Held {
     VideoPicture picture;
@@ -56,7 +37,6 @@ class StreamedPairs final : public PairSource {
   bool fetch_and_hold(FramePair& pair);
   void give_held(FramePair& pair);
 
-  std::unique_ptr<PairSource> source_;
   int next_index_ = 0;
   int source_index_ = 0;  ///< of the pair that the source gives next
   std::deque<Held> held_;

@@ -45,7 +45,7 @@ class MatchStep final : public RunStep {
       match_images(slot, request);
     }
     const Photograph& image = options_.match.reference == Side::kLeft ? *slot.left : *slot.right;
-    slot.posterior.erase(image.left_out, execution_);
+    slot.posterior.erase(image.left_out);
   }
 
   void add_memory_use(MemoryUse& use) const override {
@@ -142,12 +142,9 @@ class MatchStep final : public RunStep {
 /// What matching one frame stores. level_bytes: see level_bands().
 SearchPlan match_plan(const SequenceOptions& options, const PairShape& shape,
                       std::size_t level_bytes = kDefaultLevelBytes) {
-  std::vector<double> places = {0, 1};
-  for (std::size_t k = 1; k < options.baselines.size(); ++k) {
-    places.push_back(options.baselines[k] / options.baselines.front());
-  }
+  constexpr std::array<double, 2> kPair = {0, 1};
   const MatchedPart part(options.match.in_force(), {shape.source.width_px, shape.source.height_px},
-                         places);
+                         kPair);
   return search_plan(options_of_part(options.match),
                      {.image = part.extent(),
                       .channels = shape.channels,

@@ -21,11 +21,10 @@ StepBytes rectify_bytes(const SequenceOptions& options, const PairShape& shape) 
   if (!shape.is_rectified_here) {
     return {};
   }
-  // Positions in the photographs, and which pixels have none.
-  constexpr std::size_t kBytesPerPixel = 2 * sizeof(float) + 1;
-  return {
-      .of_frame = 2 * (shape.photograph_bytes() + shape.pixels()),
-      .of_run = static_cast<std::size_t>(shape.cameras_kept) * 2 * kBytesPerPixel * shape.pixels()};
+  // Positions in the photographs.
+  return {.of_frame = 2 * (shape.photograph_bytes() + shape.pixels()),
+          .of_run = static_cast<std::size_t>(shape.cameras_kept) * 2 * 2 * sizeof(float) *
+                    shape.pixels()};
 }
 
 std::size_t rectified_bytes(const FrameSlot& slot) {

@@ -99,7 +99,7 @@ void EpipolarSearch::refine(RefinementWork& work) {
   if (job_.is_checked()) {
     start_stage("cross-check");
     for (const MapTask& task : job_.tasks) {
-      erase_left_out(task.image->left_out, job_.execution, *task.map);
+      erase_left_out(task.image->left_out, *task.map);
     }
     const DisparityMap left_px = job_.maps.left.disparity_px.copy();
     for (const MapTask& task : job_.tasks) {

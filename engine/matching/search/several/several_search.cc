@@ -115,7 +115,7 @@ std::vector<PartnerMap> SeveralSearch::search_partners() {
     prepare_map(check, k);
     start_stage(check.name);
     search_levels(check, input_);
-    erase_left_out(check.image->left_out, job_.execution, map);
+    erase_left_out(check.image->left_out, map);
     partners.push_back({std::as_const(map.disparity_px).view(), job_.images[k].place});
   }
   return partners;
