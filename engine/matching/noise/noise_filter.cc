@@ -33,7 +33,7 @@ NoiseFilter filter_of(const FoundNoise& noise) {
     case NoiseKind::kCodec:
       return {.sigma_px = 1, .cut_off_grey_levels = 20};
     case NoiseKind::kSensor:
-      return {.sigma_px = 2, .cut_off_grey_levels = 3.5 * noise.grey_levels};
+      return {.sigma_px = 2, .cut_off_grey_levels = 4 * noise.grey_levels};
   }
   return {};
 }
