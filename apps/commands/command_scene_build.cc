@@ -4,6 +4,7 @@
 #include "apps/scene/scene_build_job.h"
 #include "apps/settings/command_line.h"
 #include "engine/options/match_settings.h"
+#include "engine/options/pair_source_settings.h"
 #include "engine/options/settings.h"
 
 namespace vantage::apps {
@@ -16,6 +17,7 @@ void add_file_settings(Settings& settings, SceneBuildJob& job) {
       "neighbours", job.neighbours, "N",
       "Neighbours that each image of --poses is matched with, the nearest in different "
       "directions");
+  add_white_level_setting(settings, job.white_level);
   Setting& output = settings.path("output", job.output, "SCENE",
                                   "Folder of the scene; existing results are kept");
   output.short_name = 'o';

@@ -11,6 +11,7 @@
 #include "apps/process/outputs.h"
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
 #include "apps/scene/scene_rectification.h"
 #include "engine/error.h"
@@ -76,7 +77,8 @@ int run_scene_build(const SceneBuildJob& job, const Settings& settings) {
                                   .settings = match_settings_of(job.match),
                                   .copy_images = job.copy_images,
                                   .check_rectification = job.check_rectification,
-                                  .neighbours = job.neighbours};
+                                  .neighbours = job.neighbours,
+                                  .white_level = job.white_level};
   options.validate();
   CommandWork work(settings, job.common, reported_settings(settings, job.match));
   RunReport& report = work.report;
@@ -88,6 +90,7 @@ int run_scene_build(const SceneBuildJob& job, const Settings& settings) {
     check_files(job, settings, images);
     return SceneBuilder(job.output, std::move(images), options, execution);
   });
+  tell_remarks(builder.remarks(), job.common, report);
   if (!job.common.quiet) {
     for (const std::string& remark : remarks) {
       tell("scene build: note: {}\n", remark);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "apps/scene/scene_images.h"
@@ -19,6 +20,7 @@ struct SceneBuildJob {
   std::string output;
   bool copy_images = false;
   bool check_rectification = true;
+  std::optional<double> white_level;
   int neighbours = SceneBuildOptions{}.neighbours;
 };
 

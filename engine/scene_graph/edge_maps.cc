@@ -10,7 +10,6 @@
 
 #include "engine/error.h"
 #include "engine/image/transposed.h"
-#include "engine/io/images/photograph_io.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/scene_graph/posed_edges.h"
@@ -92,7 +91,7 @@ DisparityMaps EdgeMaps::match_rows(const std::array<Photograph, 2>& images, doub
 
 std::array<Photograph, 2> EdgeMaps::photographs_of(const SceneEdge& edge) const {
   const auto photograph = [&](int vertex) {
-    return read_photograph(images_.at(static_cast<std::size_t>(vertex)).file);
+    return scene_.read_image(images_.at(static_cast<std::size_t>(vertex)).file);
   };
   return {photograph(edge.first), photograph(edge.second)};
 }

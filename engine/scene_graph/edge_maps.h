@@ -37,6 +37,7 @@ struct SceneBuildOptions {
   bool check_rectification = true;
   /// Neighbours that every posed camera is joined to, 1 to kMaxNeighbours.
   int neighbours = 4;
+  std::optional<double> white_level = {};  ///< of all images, see WhiteLevelSearch
 
   /// Throws UsageError as MatchOptions does, and for a search in two dimensions.
   void validate() const;

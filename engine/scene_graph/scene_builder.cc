@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/white_level.h"
 #include "engine/io/files/json_text.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/order_statistics.h"
@@ -88,16 +89,22 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
         fmt::format("{}: another process builds this scene, expected none", folder_.string()));
   }
   scene_.settings = parse_json(options_.settings, "settings").dump();
+  WhiteLevelSearch white(options_.white_level);
   Photograph first;
   for (const SceneImage& image : images_) {
     Photograph photograph = read_photograph(image.file);
     require_size_of_camera(image, photograph);
+    white.add(photograph);
     if (&image == &images_.front()) {
       first = std::move(photograph);
     } else {
       require_same_shape(image, photograph, images_.front(), first);
     }
     scene_.images.push_back(stored_image(image));
+  }
+  if (WhiteLevel level = white.found(); level.scales(first)) {
+    scene_.white_level = level.value;
+    remarks_ = std::move(level.remarks);
   }
   scene_.width_px = first.width();
   scene_.height_px = first.height();
@@ -149,6 +156,7 @@ bool SceneBuilder::is_finished(const StoredEdge& stored, const StoredScene& befo
 void SceneBuilder::keep_finished_edges() {
   const std::optional<StoredScene> before = find_scene(folder_);
   const bool is_same_work = before && before->settings == scene_.settings &&
+                            before->white_level == scene_.white_level &&
                             before->focal_length_px == scene_.focal_length_px;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const SceneEdge& edge = edges_[i];

@@ -40,6 +40,8 @@ class SceneBuilder {
                SceneBuildOptions options, Execution& execution);
 
   [[nodiscard]] const std::vector<SceneEdge>& edges() const { return edges_; }
+  /// What was found in the images.
+  [[nodiscard]] const std::vector<Remark>& remarks() const { return remarks_; }
   [[nodiscard]] int images() const { return static_cast<int>(images_.size()); }
   /// Triangles of views; none for posed cameras.
   [[nodiscard]] int triangles() const {
@@ -73,6 +75,7 @@ class SceneBuilder {
   SceneBuildOptions options_;
   Execution& execution_;
   StoredScene scene_;
+  std::vector<Remark> remarks_;
   std::optional<SceneLayout> layout_;  // of cameras without poses
   std::vector<SceneEdge> edges_;
   FileLock lock_;

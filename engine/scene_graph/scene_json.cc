@@ -174,6 +174,12 @@ StoredScene scene_of(const Json& json, const std::string& name) {
   scene.unit_length = json.at("unit_length").get<double>();
   scene.width_px = json.at("size").at(0).get<int>();
   scene.height_px = json.at("size").at(1).get<int>();
+  if (json.contains("white_level")) {
+    scene.white_level = json.at("white_level").get<double>();
+    if (!(*scene.white_level > 0)) {
+      throw Error(fmt::format("{}: white_level is not above 0", name));
+    }
+  }
   for (const Json& image : json.at("images")) {
     scene.images.push_back(
         {.file = name_of_stored(image.at("file").get<std::string>()),
@@ -220,6 +226,9 @@ std::string scene_text(const StoredScene& scene) {
                {"size", {scene.width_px, scene.height_px}},
                {"images", images},
                {"edges", edges}};
+  if (scene.white_level) {
+    json["white_level"] = *scene.white_level;
+  }
   if (scene.is_posed()) {
     add_posed_values(scene, json);
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/white_level.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/file_bytes.h"
@@ -47,6 +48,14 @@ Mask read_mask(const fs::path& file, const Photograph& image) {
 }
 
 }  // namespace
+
+Photograph StoredScene::read_image(const fs::path& file) const {
+  Photograph image = read_photograph(file);
+  if (white_level) {
+    WhiteLevel{image.pixels.index(), *white_level}.apply(image);
+  }
+  return image;
+}
 
 const StoredEdge* StoredScene::find(const SceneEdge& edge) const {
   const auto found = std::find_if(edges.begin(), edges.end(), [&](const StoredEdge& stored) {
@@ -160,7 +169,7 @@ SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int ve
                     image_file.string()));
   }
   SceneVertex result;
-  result.image = read_photograph(image_file);
+  result.image = scene.read_image(image_file);
   for (const StoredEdge& edge : scene.edges) {
     for (std::size_t side = 0; side < 2; ++side) {
       const int ends[] = {edge.edge.first, edge.edge.second};

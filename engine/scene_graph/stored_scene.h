@@ -58,6 +58,7 @@ struct StoredScene {
   std::string settings = "{}";  ///< a JSON object: the settings that affect maps
   int width_px = 0;             ///< of all images
   int height_px = 0;
+  std::optional<double> white_level;  ///< of all images; empty: that of their type
   /// SceneLayout::unit_length(), or median_length() of posed cameras.
   double unit_length = 1;
   /// Of posed cameras: maps hold focal_length_px · length of the edge / depth in the own camera.
@@ -68,6 +69,8 @@ struct StoredScene {
   std::vector<SceneEdge> graph = {};
   std::vector<RefusedEdge> refused = {};
 
+  /// read_photograph() at the white level.
+  [[nodiscard]] Photograph read_image(const std::filesystem::path& file) const;
   [[nodiscard]] bool is_posed() const { return !images.empty() && images[0].camera.has_value(); }
   /// Of a posed scene.
   [[nodiscard]] std::vector<SceneCamera> cameras() const;
