@@ -250,7 +250,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
     if (const std::optional<DisparityRange> known = range_of_run_to_resume(job)) {
       return known;
     }
-    Progress progress(settings.command(), "pairs searched for the range", job.shown_progress());
+    Progress progress(settings.command() + ": range", "pairs", job.shown_progress());
     const auto found =
         find_sequence_range(*session.pairs, rectify, execution,
                             job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero,

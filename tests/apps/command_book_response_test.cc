@@ -141,7 +141,7 @@ TEST_F(AutomaticDisparities, SynthAndRunTakeItToo) {
   result = succeeds(
       run_vantage({"run", "--left", left_, "--right", right_, "-o", folder_ / "out",
                    "--disparities", "auto", "--progress", "bar", "--report", folder_ / "r.json"}));
-  EXPECT_THAT(result.err, HasSubstr("1/1 pairs searched for the range"));
+  EXPECT_THAT(result.err, HasSubstr("run: range: [========================] 1/1 pairs"));
   EXPECT_THAT(result.err, HasSubstr("run: --disparities auto is "));
   EXPECT_NE(read_json(folder_ / "r.json")["settings"]["disparities"], "auto");
 }
