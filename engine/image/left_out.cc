@@ -106,7 +106,7 @@ void erase_left_out(const Mask& left_out, Image<float>& values) {
 void erase_left_out(const Mask& left_out, MatchedMap& map) {
   erase_left_out(left_out, map.disparity_px);
   erase_left_out(left_out, map.disparity_y_px);
-  erase_left_out(left_out, map.confidence);
+  set_where(left_out, 0, map.confidence);
   set_where(left_out, kSet, map.unmatched);
 }
 

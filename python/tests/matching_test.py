@@ -68,6 +68,19 @@ def test_near_the_truth(pair, truth):
     assert 0 <= vantage.Matcher().compute(*pair).disparities[0] <= 2
 
 
+def test_a_map_that_measures_nothing_warns_once(pair):
+    black = np.zeros((60, 80), np.uint8)
+    matcher = vantage.Matcher(disparities=(0, 15))
+    with pytest.warns(UserWarning, match="hardly a measurement") as caught:
+        results = [matcher.compute(black, black) for _ in range(2)]
+    assert len(caught) == 1 and caught[0].filename == __file__
+    assert results[1].reliable_share < 0.1 and results[1].confidence.max() < 0.5
+    good = matcher.compute(*pair)
+    assert good.reliable_share > 0.5 and good.confidence.min() >= 0
+    assert good.matched_share + good.filled_share == pytest.approx(1)
+    assert good.matched_share == pytest.approx(1 - good.unmatched.mean())
+
+
 def test_what_is_computed_later_is_the_same(pair):
     matcher = vantage.Matcher(disparities=(0, 15))
     at_once = matcher.compute(*pair, right_disparity=True, confidence=True)

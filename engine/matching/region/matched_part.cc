@@ -187,7 +187,7 @@ void MatchedPart::bring_back(const MatchedMap& map_of_part, std::size_t index,
                     range_, map.disparity_px);
   place_disparities(map_of_part.disparity_y_px, static_cast<double>(extent.rows) / extent_.rows,
                     range_y_, map.disparity_y_px);
-  place_nearest(map_of_part.confidence, kNaN, map.confidence);
+  place_nearest(map_of_part.confidence, 0.0F, map.confidence);
   place_nearest(map_of_part.unmatched, kUnmatched, map.unmatched);
   erase_left_out(image.left_out, map);
 }

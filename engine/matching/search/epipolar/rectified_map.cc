@@ -38,7 +38,7 @@ void bring_to_rectified(const Rectifier& rectifier, Side side, Execution& execut
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   constexpr std::uint8_t kUnmatched = 255;
   bring(rectifier, side, kNaN, execution, map.disparity_px);
-  bring(rectifier, side, kNaN, execution, map.confidence);
+  bring(rectifier, side, 0.0F, execution, map.confidence);
   bring(rectifier, side, kUnmatched, execution, map.unmatched);
 }
 
