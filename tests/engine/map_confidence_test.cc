@@ -122,7 +122,9 @@ MatchReport matched(const Photograph& left, const Photograph& right, bool* is_wa
 TEST(MapWorth, WarnsOfMapsThatMeasureNothing) {
   const Scene scene(0);
   const Photograph other = mirrored(scene.left);
-  const Photograph black{Image<std::uint8_t>(131, 90, 1)};
+  Image<std::uint8_t> zero(131, 90);
+  zero.fill(0);
+  const Photograph black{std::move(zero)};
   bool is_warned = true;
   const MatchReport good = matched(scene.left, scene.right, &is_warned);
   EXPECT_FALSE(is_warned) << good.shares->reliable;

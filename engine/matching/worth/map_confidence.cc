@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -123,8 +124,9 @@ class RowJudge {
   [[nodiscard]] float unmatched_share(int x, int y, int step_px) const {
     int count = 0;
     for (int i = -2; i <= 2; ++i) {
+      const std::uint8_t* const row = finished_.map->unmatched.row(row_at(y + i * step_px));
       for (int j = -2; j <= 2; ++j) {
-        count += is_unmatched(column_at(x + j * step_px), row_at(y + i * step_px)) ? 1 : 0;
+        count += row[column_at(x + j * step_px)] != 0 ? 1 : 0;
       }
     }
     return static_cast<float>(count) / kWindowPixels;
@@ -139,17 +141,21 @@ class RowJudge {
     std::array<Deviation, 3> differences;  // to the partner a pixel to the left, itself, right
     int alike = 0;
     const float centre = own_.row(y)[x];
+    std::array<int, 5> columns;
+    for (int j = 0; j < 5; ++j) {
+      columns[static_cast<std::size_t>(j)] = column_at(x + (j - 2) * kNear_px);
+    }
     for (int i = -2; i <= 2; ++i) {
       const int row = row_at(y + i * kNear_px);
-      for (int j = -2; j <= 2; ++j) {
-        const int column = column_at(x + j * kNear_px);
-        const float known_px = disparity_px_.at(column, row);
-        const float px = is_finite(known_px) ? known_px : own_px;
+      const float* const map_row = disparity_px_.row(row);
+      const float* const own_row = own_.row(row);
+      const float* const other_row = other_.empty() ? nullptr : other_.front().row(row);
+      for (const int column : columns) {
+        const float px = is_finite(map_row[column]) ? map_row[column] : own_px;
         alike += std::abs(px - own_px) <= 1 ? 1 : 0;
-        const float grey = own_.row(row)[column];
-        texture.add(grey - centre);
-        if (!other_.empty()) {
-          add_differences(other_.front().row(row), partner(column, px), grey, differences);
+        texture.add(own_row[column] - centre);
+        if (other_row != nullptr) {
+          add_differences(other_row, partner(column, px), own_row[column], differences);
         }
       }
     }
@@ -174,9 +180,13 @@ class RowJudge {
     const float inside = std::clamp(at, -2.0F, static_cast<float>(width_ + 1));
     const int left = static_cast<int>(std::floor(inside));
     const float part = inside - static_cast<float>(left);
-    std::array<float, 4> values;
-    for (int k = 0; k < 4; ++k) {
-      values[static_cast<std::size_t>(k)] = other[column_at(left - 1 + k)];
+    std::array<float, 4> at_border;
+    const float* values = other + left - 1;
+    if (left < 1 || left + 2 >= width_) {
+      for (int k = 0; k < 4; ++k) {
+        at_border[static_cast<std::size_t>(k)] = other[column_at(left - 1 + k)];
+      }
+      values = at_border.data();
     }
     for (std::size_t k = 0; k < 3; ++k) {
       differences[k].add(grey - (values[k] + part * (values[k + 1] - values[k])));
