@@ -27,7 +27,7 @@ cv::Mat as_mat(ImageView<const T> image) {
 
 template <typename T>
 void set_where(const Mask& mask, double value, Image<T>& image) {
-  if (!mask.empty() && !image.empty()) {
+  if (!mask.empty() && mask.width() == image.width() && mask.height() == image.height()) {
     as_mat<T>(image.view()).setTo(cv::Scalar::all(value), as_mat<std::uint8_t>(mask.view()));
   }
 }

@@ -24,7 +24,8 @@ void blacken_left_out(Photograph& photograph);
 /// The pixels of a picture of half the size, rounded up, of whose 2×2 pixels none shows the scene.
 Mask half_of(const Mask& left_out);
 
-/// Unknown, and unmatched, where `left_out` is set. An empty mask, or image of the map, is none.
+/// Unknown, and unmatched, where `left_out` is set. An empty mask is none; images of the map that
+/// have another size were not asked for.
 void erase_left_out(const Mask& left_out, MatchedMap& map);
 void erase_left_out(const Mask& left_out, Image<float>& values);
 

@@ -91,14 +91,14 @@ TEST(SceneMask, TakesFilesAlphaAndOneColour) {
   Image<std::uint16_t> colours(2, 1, 4);
   const std::array<std::uint16_t, 8> values = {7, 8, 9, 1, 7, 8, 10, 0};
   std::ranges::copy(values, colours.row(0));
-  Photograph colour{colours.copy()};
-  Photograph other{std::move(colours)};
-  leave_out_of_pair({.left = "none", .no_data = {7, 8, 9}}, colour, other);
-  EXPECT_EQ(colour.left_out.at(0, 0), 255);
-  EXPECT_EQ(colour.left_out.at(1, 0), 0);
-  leave_out_of_pair({.left = "alpha"}, colour, other);
-  EXPECT_EQ(colour.left_out.at(0, 0), 0);
-  EXPECT_EQ(colour.left_out.at(1, 0), 255);
+  const auto left_out = [&](const SceneMaskOptions& options) {
+    Photograph one{colours.copy()};
+    Photograph other{colours.copy()};
+    leave_out_of_pair(options, one, other);
+    return std::pair<int, int>(one.left_out.at(0, 0), other.left_out.at(1, 0));
+  };
+  EXPECT_EQ(left_out({.left = "none", .no_data = {7, 8, 9}}), std::pair(255, 0));
+  EXPECT_EQ(left_out({.left = "alpha"}), std::pair(0, 255));
   EXPECT_THROW(SceneMaskOptions({.no_data = {1, 2}}).validate(), UsageError);
 }
 
