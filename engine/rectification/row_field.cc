@@ -133,26 +133,27 @@ RowField::Row RowField::along_row(double y) const {
 double RowField::row_of_left(double x, double y) const {
   // Slopes are hundredths: each round gains two digits.
   double row = y;
-  for (int round = 0; round < 4; ++round) {
+  for (int round = 0; round < 3; ++round) {
     row = y - at(x, row);
   }
   return row;
 }
 
-double RowField::max_px() const {
-  const RowTerms grid = grid_terms(width_, height_);
-  return (grid * Eigen::Map<const Eigen::VectorXd>(coefficients_.data(), kMaxTerms))
-      .cwiseAbs()
-      .maxCoeff();
+Eigen::ArrayXd RowField::on_grid() const {
+  return grid_terms(width_, height_) *
+         Eigen::Map<const Eigen::VectorXd>(coefficients_.data(), kMaxTerms);
 }
+
+double RowField::max_px() const { return on_grid().abs().maxCoeff(); }
+
+double RowField::rms_px() const { return std::sqrt(on_grid().square().mean()); }
 
 double RowField::turn_degrees() const {
   return std::atan(coefficients_[1] / (width_ / 2.0)) * 180 / std::numbers::pi;
 }
 
 bool RowEstimate::pays() const {
-  const double max_px = field.max_px();
-  return max_px >= kMinCorrection_px && max_px >= 3 * deviation_px;
+  return field.rms_px() >= kMinCorrection_px && field.max_px() >= 3 * deviation_px;
 }
 
 std::optional<RowEstimate> fit_rows(const std::vector<PointMatch>& points, int width_px,

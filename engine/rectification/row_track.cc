@@ -73,7 +73,7 @@ SequenceRows SequenceRowSurvey::result() const {
                       .rows = fit_rows(points_, width_, height_),
                       .pairs = static_cast<int>(samples_.size())};
   const auto differs = [&](const Sample& sample) {
-    return !result.rows || without(sample.rows.field, result.rows->field).max_px() >
+    return !result.rows || without(sample.rows.field, result.rows->field).rms_px() >
                                std::max(kMinCorrection_px, 3 * sample.rows.deviation_px);
   };
   const auto differing = std::count_if(samples_.begin(), samples_.end(), differs);

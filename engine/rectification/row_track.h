@@ -31,8 +31,8 @@ struct SequenceRows {
 };
 
 /// Collects these pairs. Points of all pairs give one field. Where the pairs' own fields differ
-/// from it by more than kMinCorrection_px and three of their standard deviations, in a quarter of
-/// the pairs or more, the rig drifts, and each pair is a key. Thread rule: one thread.
+/// from it by more than kMinCorrection_px (RMS) and three of their standard deviations, in a
+/// quarter of the pairs or more, the rig drifts, and each pair is a key. Thread rule: one thread.
 class SequenceRowSurvey {
  public:
   /// Adds a rectified pair, in the order of time. Corrects `right` by what the pair itself says, if
