@@ -167,3 +167,25 @@ def test_results_never_share_memory_that_is_in_use(pair):
     again = matcher.compute(left, right)
     assert same(again.right_disparity, expected[0].right_disparity)
     assert same(again.confidence, expected[0].confidence)
+
+
+def test_pixels_that_show_no_scene_are_unknown(pair):
+    mask = np.ones(pair[0].shape[:2], bool)
+    mask[5:15, 8:20] = False
+    matcher = vantage.Matcher("realtime", (0, 15))
+    result = matcher.compute(*pair, mask=mask, mask_right=mask.astype(np.uint8))
+    assert np.array_equal(np.isnan(result.disparity), ~mask) and result.unmatched[~mask].all()
+    assert np.array_equal(np.isnan(result.right_disparity), ~mask)
+    barred = [image.copy() for image in pair]
+    for image in barred:
+        image[:6] = 0
+    assert np.isnan(matcher.compute(*barred).disparity[:6]).all()
+    assert not np.isnan(matcher.compute(*barred, mask="none").disparity).any()
+    with pytest.raises(vantage.Error, match="the mask of the left image is"):
+        matcher.compute(*pair, mask=mask[:5])
+
+
+def test_a_region_and_a_scale(pair):
+    known = ~np.isnan(vantage.Matcher("fast", (0, 15), roi=(4, 6, 20, 11)).compute(*pair).disparity)
+    assert known.sum() == 220 and known[6:17, 4:24].all()
+    assert vantage.Matcher("fast", (0, 15), scale=0.5).compute(*pair).disparity.shape == known.shape
