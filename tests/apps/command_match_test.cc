@@ -217,8 +217,9 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   EXPECT_EQ(run_vantage({}).exit_code, 2);
   result = succeeds(run_vantage({"--help"}));
   // What pairs and films need stands first, the book last.
-  EXPECT_THAT(result.out, ContainsRegex("Stereo pairs\n  match.*\nSequences and films\n  run.*\n"
-                                        "Scharstein's book\n  book figure [^:]*\n\n'vantage help"));
+  EXPECT_THAT(result.out,
+              ContainsRegex("Stereo pairs\n  check.*\n  match.*\nSequences and films\n  run.*\n"
+                            "Scharstein's book\n  book figure [^:]*\n\n'vantage help"));
   result = succeeds(run_vantage({"match", "--help"}));
   EXPECT_THAT(result.out, HasSubstr("--disparities MIN:MAX"));
   EXPECT_EQ(result.out.find("--trace FILE"), std::string::npos);
