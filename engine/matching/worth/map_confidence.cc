@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "engine/image/intensity_rows.h"
@@ -85,6 +86,7 @@ float look_up(const std::array<confidence_table::Entry, N>& table, float x) {
 struct Judgement {
   float score = std::numeric_limits<float>::quiet_NaN();  ///< NaN: its disparity is unknown
   bool is_flat = false;                                   ///< all pixels of its window are equal
+  bool is_scene = true;                                   ///< it is not left out
 };
 
 /// Judges the pixels of rows [first, end) of a map.
@@ -96,7 +98,7 @@ class RowJudge {
         width_(disparity_px_.width()),
         own_(*finished.image, first, end) {
     if (finished.other != nullptr) {
-      other_.emplace_back(*finished.other, first, end);
+      other_.emplace(*finished.other, first, end);
     }
   }
 
@@ -149,7 +151,7 @@ class RowJudge {
       const int row = row_at(y + i * kNear_px);
       const float* const map_row = disparity_px_.row(row);
       const float* const own_row = own_.row(row);
-      const float* const other_row = other_.empty() ? nullptr : other_.front().row(row);
+      const float* const other_row = other_ ? other_->row(row) : nullptr;
       for (const int column : columns) {
         const float px = is_finite(map_row[column]) ? map_row[column] : own_px;
         alike += std::abs(px - own_px) <= 1 ? 1 : 0;
@@ -162,7 +164,7 @@ class RowJudge {
     namespace table = confidence_table;
     float score = look_up(table::kTexture, texture.value()) +
                   look_up(table::kAlike, static_cast<float>(alike) / kWindowPixels);
-    if (!other_.empty()) {
+    if (other_) {
       const float at = partner(x, own_px);
       const float residual = differences[1].value();
       const float beside = std::min(differences[0].value(), differences[2].value());
@@ -172,7 +174,7 @@ class RowJudge {
                look_up(table::kSharpness, (beside + table::kNoise) / (residual + table::kNoise)) +
                look_up(table::kOutside, std::max(-at, at - static_cast<float>(width_ - 1)));
     }
-    return {score, texture.value() == 0};
+    return {.score = score, .is_flat = texture.value() == 0};
   }
 
   void add_differences(const float* other, float at, float grey,
@@ -197,7 +199,7 @@ class RowJudge {
   const DisparityMap& disparity_px_;
   int width_;
   GreyRows own_;
-  std::vector<GreyRows> other_;  ///< one or none
+  std::optional<GreyRows> other_;
 };
 
 /// A sample of the pixels that are not left out.
@@ -207,21 +209,18 @@ std::vector<Judgement> sample_of(const FinishedMap& finished, Execution& executi
   const int height = finished.map->disparity_px.height();
   const int rows = std::min(height, kSampleRows);
   const int columns = std::min(width, kSampleColumns);
-  std::vector<std::vector<Judgement>> of_rows(static_cast<std::size_t>(rows));
+  std::vector<Judgement> sample(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns));
   execution.executor().parallel_for(rows, [&](int i) {
     const int y = (2 * i + 1) * height / (2 * rows);
     const RowJudge judge(finished, y, y + 1);
+    Judgement* const of_row = sample.data() + static_cast<std::ptrdiff_t>(i) * columns;
     for (int j = 0; j < columns; ++j) {
       const int x = (2 * j + 1) * width / (2 * columns);
-      if (left_out.empty() || left_out.at(x, y) == 0) {
-        of_rows[static_cast<std::size_t>(i)].push_back(judge.judge(x, y));
-      }
+      const bool is_scene = left_out.empty() || left_out.at(x, y) == 0;
+      of_row[j] = is_scene ? judge.judge(x, y) : Judgement{.is_scene = false};
     }
   });
-  std::vector<Judgement> sample;
-  for (const std::vector<Judgement>& row : of_rows) {
-    sample.insert(sample.end(), row.begin(), row.end());
-  }
+  std::erase_if(sample, [](const Judgement& one) { return !one.is_scene; });
   return sample;
 }
 
