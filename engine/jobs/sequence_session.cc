@@ -83,10 +83,15 @@ std::optional<SequenceRows> find_rows(SequenceJob& job, Execution& execution,
     options.corrects_rows_per_pair = true;
   } else if (job.rows == RowMode::kAuto && options.rows.keys.empty()) {
     SequenceRowSurvey survey;
-    visit_sampled_pairs(*session.pairs, [&](FramePair& pair) {
-      session.rectify(pair, execution);
-      survey.add(pair.index, pair.left, pair.right, execution);
-    });
+    // Who sends a stream may wait for the result of its first pair before sending the next.
+    const int max_pairs = session.pairs->is_stream() ? 1 : kMaxSampledPairs;
+    visit_sampled_pairs(
+        *session.pairs,
+        [&](FramePair& pair) {
+          session.rectify(pair, execution);
+          survey.add(pair.index, pair.left, pair.right, execution);
+        },
+        {}, max_pairs);
     found = survey.result();
     options.rows = found->track;
     job.rows = options.rows.keys.empty() ? RowMode::kAsIs : RowMode::kAuto;

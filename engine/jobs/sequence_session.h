@@ -41,8 +41,8 @@ struct SequenceSession {
 };
 
 /// Finds out how rows are corrected, if `job` leaves that open, from the pairs of
-/// visit_sampled_pairs(): sets rows and corrects_rows_per_pair of its options, or its RowMode to
-/// kAsIs. Returns what was found; empty where nothing was looked at.
+/// visit_sampled_pairs(), of a stream from the first: sets rows and corrects_rows_per_pair of its
+/// options, or its RowMode to kAsIs. Returns what was found; empty where nothing was looked at.
 std::optional<SequenceRows> find_rows(SequenceJob& job, Execution& execution,
                                       SequenceSession& session);
 

@@ -5,18 +5,11 @@
 #include "engine/error.h"
 
 namespace vantage {
-namespace {
-
-/// Estimating the range of a pair takes an eighth of its matching time: little compared with a long
-/// sequence, and at most that of a single pair for a short one.
-constexpr int kMaxPairs = 16;
-
-}  // namespace
 
 void visit_sampled_pairs(PairSource& pairs, const PreparePair& visit,
-                         const std::function<void(int, int)>& progress) {
+                         const std::function<void(int, int)>& progress, int max_pairs) {
   const FrameRange all = pairs.repeatable_pairs();
-  const int count = std::min(all.count(), kMaxPairs);
+  const int count = std::min(all.count(), max_pairs);
   FramePair pair;
   for (int i = 0; i < count; ++i) {
     const auto index = all.first + (count == 1 ? 0
