@@ -148,6 +148,7 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     report.timed_compute(
         [&] { matcher.match(result.left, result.right, {}, result.maps, &match); });
     tell_match(match, common, report);
+    tell_shares(match, common, report);
     warn_of_cut_range(common, result.left, result.right, result.maps, pair.match, is_found,
                       execution, report);
   }

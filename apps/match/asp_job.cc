@@ -101,6 +101,7 @@ std::string match(const AspJob& job, const DisparityMap& left, const DisparityMa
   report.timed_compute(
       [&] { matcher.match(left_image, right_image, {.right = false}, maps, &matched); });
   tell_match(matched, job.common, report);
+  tell_shares(matched, job.common, report);
   disparities_of_data(maps.left, left.view(), right.view(), execution, map);
   return {};
 }

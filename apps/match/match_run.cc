@@ -345,6 +345,7 @@ int run_match(MatchJob& job, const Settings& settings) {
   report.write(job.common.report);
   if (!job.common.quiet) {
     print_results(job, inputs.size, depths, space);
+    tell_shares(matched.report, job.common, report);
     report.print_summary();
   }
   return kExitDone;

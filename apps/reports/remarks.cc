@@ -18,11 +18,14 @@ void tell_match(const MatchReport& match, const CommonOptions& common, RunReport
   report.add_match(match);
   if (match.shares) {
     report.add_result("map", map_values(*match.shares));
-    if (!common.quiet) {
-      tell("{}: {}\n", report.command(), to_text(*match.shares));
-    }
   }
   tell_remarks(match.remarks, common, report);
+}
+
+void tell_shares(const MatchReport& match, const CommonOptions& common, const RunReport& report) {
+  if (match.shares && !common.quiet) {
+    tell("{}: {}\n", report.command(), to_text(*match.shares));
+  }
 }
 
 SettingValue noise_values(const FoundNoise& noise) {

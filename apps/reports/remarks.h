@@ -12,6 +12,8 @@ namespace vantage::apps {
 void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, RunReport& report);
 /// The same for those of a match, and what its map is worth (`results.map`); adds its stages.
 void tell_match(const MatchReport& match, const CommonOptions& common, RunReport& report);
+/// One line: how much of the map was matched and filled. Unless that is quiet.
+void tell_shares(const MatchReport& match, const CommonOptions& common, const RunReport& report);
 /// What a map is worth, as values of a report.
 SettingValue map_values(const MapShares& shares);
 /// Noise that was found, likewise; null where there is none.
