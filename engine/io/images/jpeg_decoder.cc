@@ -101,8 +101,8 @@ class JpegReader {
     return {static_cast<int>(decoder_.output_width), static_cast<int>(decoder_.output_height),
             decoder_.num_components == 1 ? 1 : 3};
   }
-  /// Of the first component: luminance. Valid from begin() on, which reads the tables of all scans
-  /// of a progressive file.
+  /// Of the first component: luminance. Valid from begin(), which reads the tables of all scans of
+  /// a progressive file, to read(), which frees them.
   [[nodiscard]] double step_of_low_frequencies() const {
     const JQUANT_TBL* table = decoder_.comp_info[0].quant_table;
     constexpr std::array<int, 5> kLowest = {1, 8, 16, 9, 2};  // of rows of eight, without 0
@@ -154,12 +154,11 @@ Photograph decode_jpeg(const FileBytes& file, Photograph& memory) {
   Image<std::uint8_t> image = take_image<std::uint8_t>(memory, shape);
   std::vector<std::uint8_t> cmyk_row(reader.is_cmyk() ? 4 * static_cast<std::size_t>(shape.width)
                                                       : std::size_t{0});
+  const LossyCoding coding{.codec = "JPEG", .step_grey_levels = reader.step_of_low_frequencies()};
   if (!reader.read(image, cmyk_row.empty() ? nullptr : cmyk_row.data())) {
     fail(file, reader);
   }
-  return {std::move(image),
-          {.coding =
-               LossyCoding{.codec = "JPEG", .step_grey_levels = reader.step_of_low_frequencies()}}};
+  return {std::move(image), {.coding = coding}};
 }
 
 }  // namespace vantage
