@@ -112,8 +112,7 @@ constexpr Rule kMatchJobRules[] = {
      "no effect with --unrectified: whole maps are compared"},
     {kMatchJob, "tuning | no-tuning", "unrectified",
      "no effect with --unrectified: tuning is for rectified pairs"},
-    {kMatchJob, "no-rectification-check | rows", "unrectified",
-     "no effect with --unrectified"},
+    {kMatchJob, "no-rectification-check | rows", "unrectified", "no effect with --unrectified"},
     // Rows of the right image.
     {kMatchJob, "rows", "no-rectification-check | disparities-y",
      "no effect where rows are not looked at"},
