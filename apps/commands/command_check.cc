@@ -139,7 +139,7 @@ std::string command_of(const CheckJob& job, const Settings& settings, const Chec
              : fmt::format("vantage run --left {} --right {} -o results{}", left, right, options);
 }
 
-/// Of a match of the pair, or of a run of all pairs.
+/// Planned memory of the command that is printed: `match` of one pair, `run` of more.
 std::size_t planned_bytes(const CheckJob& job, const CheckedPairs& checked,
                           const SequenceSession& session, const FramePair& pair) {
   SequenceOptions options = job.sequence;

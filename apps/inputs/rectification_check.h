@@ -15,7 +15,7 @@ namespace vantage::apps {
 /// What is done about the rows of a pair.
 struct RowSettings {
   RowMode mode = RowMode::kAuto;
-  bool check = true;  ///< false: nobody looks at them
+  bool check = true;  ///< false: rows are not examined
 };
 
 /// --rows and --no-rectification-check.
@@ -53,6 +53,6 @@ std::optional<CorrectedRows> correct_rows(const RowTask& task, const Photograph&
                                           Photograph& right, Execution& execution,
                                           RunReport& report);
 
-/// Of the report.
+/// What was found about rows, as values of a report (`results.rows`).
 SettingValue row_values(const RowEstimate& rows, bool is_corrected);
 }  // namespace vantage::apps

@@ -15,7 +15,7 @@ bool rows_correspond(const RowCheck& check);
 std::string table_line(std::string_view label, const std::string& text);
 /// What was found in a pair, as lines of the table.
 std::string examination_text(const FramePair& pair, const PairExamination& found);
-/// The same by name, for reports.
+/// What was found in a pair, as values of a report.
 SettingValue examination_values(const FramePair& pair, const PairExamination& found);
 
 }  // namespace vantage::apps

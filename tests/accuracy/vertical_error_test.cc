@@ -216,7 +216,7 @@ TEST(VerticalError, OfTheMotorcycleIsThatOfItsTruth) {
   const auto found = check_rectification(left, right);
   ASSERT_TRUE(found);
   EXPECT_NEAR(found->mean_px, 0.23, 0.12);
-  EXPECT_NEAR(found->systematic_px, 0.25, 0.05);
+  EXPECT_NEAR(found->systematic_px, 0.235, 0.03);  // RMS of the truth, disp0y.pfm
   const auto perfect = test_paths::shared_data() / "motorcycle_perfect";
   const auto other = check_rectification(read_photograph(perfect / "im0.png"),
                                          read_photograph(perfect / "im1.png"));
