@@ -8,7 +8,7 @@
 
 #include "apps/process/tell.h"
 #include "apps/reports/vertical_error_report.h"
-#include "engine/rectification/row_check.h"
+#include "engine/rectification/rows/row_check.h"
 #include "engine/seconds_since.h"
 #include "scheduler/trace.h"
 

@@ -8,7 +8,7 @@
 #include "engine/image/photograph.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/settings.h"
-#include "engine/rectification/row_correction.h"
+#include "engine/rectification/rows/row_correction.h"
 
 namespace vantage::apps {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/comfort/image_order.h"
-#include "engine/rectification/row_check.h"
+#include "engine/rectification/rows/row_check.h"
 
 namespace vantage {
 namespace {

@@ -11,7 +11,7 @@
 #include "engine/image/content_hash.h"
 #include "engine/image/side.h"
 #include "engine/matching/pair_matcher.h"
-#include "engine/rectification/row_correction.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "engine/seconds_since.h"
 
 namespace vantage {

@@ -11,7 +11,7 @@
 #include "engine/matching/noise/noise_estimate.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/worth/map_shares.h"
-#include "engine/rectification/row_check.h"
+#include "engine/rectification/rows/row_check.h"
 #include "engine/remark.h"
 
 namespace vantage {

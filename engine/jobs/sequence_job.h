@@ -10,7 +10,7 @@
 #include "engine/options/settings.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectified_pair.h"
-#include "engine/rectification/row_correction.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "engine/sequence/options/sequence_options.h"
 #include "engine/sequence/pairs/pair_source.h"
 #include "engine/sequence/work_plan.h"

@@ -9,7 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/options/frame_step_setting.h"
-#include "engine/rectification/row_correction.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "engine/sequence/pairs/sequence_range.h"
 
 namespace vantage {

@@ -9,7 +9,7 @@
 #include "engine/error.h"
 #include "engine/rectification/feature_matches.h"
 #include "engine/rectification/relative_pose.h"
-#include "engine/rectification/row_check.h"
+#include "engine/rectification/rows/row_check.h"
 
 namespace vantage {
 namespace {

@@ -3,7 +3,7 @@
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/rectification/rectifier.h"
-#include "engine/rectification/row_check.h"
+#include "engine/rectification/rows/row_check.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/unrectified_pair.h"

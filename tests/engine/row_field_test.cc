@@ -1,11 +1,11 @@
 // Rows that do not correspond: what pairs say of them, and their correction.
 
-#include "engine/rectification/row_field.h"
+#include "engine/rectification/rows/row_field.h"
 
-#include "engine/rectification/row_check.h"
-#include "engine/rectification/row_correction.h"
-#include "engine/rectification/row_points.h"
-#include "engine/rectification/row_track.h"
+#include "engine/rectification/rows/row_check.h"
+#include "engine/rectification/rows/row_correction.h"
+#include "engine/rectification/rows/row_points.h"
+#include "engine/rectification/rows/row_track.h"
 #include "tests/engine/engine_test.h"
 
 namespace vantage::row_field_test {

@@ -12,7 +12,7 @@
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/video_coding.h"
 #include "engine/matching/options/match_options.h"
-#include "engine/rectification/row_track.h"
+#include "engine/rectification/rows/row_track.h"
 #include "engine/reprojection/point_cloud.h"
 #include "engine/sequence/past/temporal_options.h"
 #include "engine/synthesis/synthesis_options.h"

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "engine/rectification/row_correction.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "engine/sequence/steps/frame_needs.h"
 #include "engine/sequence/steps/step_list.h"
 

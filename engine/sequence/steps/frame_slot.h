@@ -16,7 +16,7 @@
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/matching/volume/posterior_moments.h"
-#include "engine/rectification/row_field.h"
+#include "engine/rectification/rows/row_field.h"
 #include "engine/sequence/journal/pending_files.h"
 #include "engine/sequence/journal/run_journal.h"
 #include "engine/sequence/pairs/pair_cameras.h"

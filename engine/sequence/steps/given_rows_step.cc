@@ -1,4 +1,4 @@
-#include "engine/rectification/row_correction.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "engine/sequence/steps/step_list.h"
 
 namespace vantage {

@@ -5,7 +5,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
-#include "engine/rectification/row_check.h"
+#include "engine/rectification/rows/row_check.h"
 
 namespace vantage {
 

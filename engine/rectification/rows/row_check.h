@@ -6,7 +6,7 @@
 
 #include "engine/execution.h"
 #include "engine/image/photograph.h"
-#include "engine/rectification/row_field.h"
+#include "engine/rectification/rows/row_field.h"
 #include "engine/rectification/vertical_error.h"
 
 namespace vantage {

@@ -4,7 +4,7 @@
 #include "engine/image/disparity_maps.h"
 #include "engine/image/photograph.h"
 #include "engine/rectification/rectifier.h"
-#include "engine/rectification/row_field.h"
+#include "engine/rectification/rows/row_field.h"
 
 namespace vantage {
 

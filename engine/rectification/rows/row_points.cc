@@ -1,4 +1,4 @@
-#include "engine/rectification/row_points.h"
+#include "engine/rectification/rows/row_points.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "engine/rectification/row_field.h"
+#include "engine/rectification/rows/row_field.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

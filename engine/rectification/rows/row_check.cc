@@ -1,10 +1,10 @@
-#include "engine/rectification/row_check.h"
+#include "engine/rectification/rows/row_check.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "engine/rectification/row_points.h"
+#include "engine/rectification/rows/row_points.h"
 
 namespace vantage {
 namespace {

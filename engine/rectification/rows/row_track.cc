@@ -1,11 +1,11 @@
-#include "engine/rectification/row_track.h"
+#include "engine/rectification/rows/row_track.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <utility>
 
-#include "engine/rectification/row_correction.h"
-#include "engine/rectification/row_points.h"
+#include "engine/rectification/rows/row_correction.h"
+#include "engine/rectification/rows/row_points.h"
 
 namespace vantage {
 namespace {
