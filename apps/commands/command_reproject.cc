@@ -16,12 +16,14 @@
 #include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/image/eight_bit.h"
+#include "engine/image/photograph_reading.h"
 #include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/metric_settings.h"
+#include "engine/options/pair_source_settings.h"
 #include "engine/options/rig_scale.h"
 #include "engine/options/settings.h"
 
@@ -35,6 +37,7 @@ struct ReprojectJob {
   std::string confidence;
   std::optional<double> disparity_scale;
   Side reference = Side::kLeft;
+  PhotographReading reading;
   std::string calibration;
   std::optional<KittiCameras> kitti_cameras;
   RectificationOptions rectification;
@@ -55,6 +58,7 @@ void add_reproject_settings(Settings& settings, ReprojectJob& job) {
   settings.number("disparity-scale", job.disparity_scale, "S",
                   "Divide values of an integer file by S; auto: 256 for 16-bit PNG");
   add_reference_setting(settings, job.reference);
+  add_reading_settings(settings, job.reading);
   settings.start_group("Cameras");
   settings.input_path("calibration", job.calibration, "FILE",
                       "Cameras of the pair, or of the photographs that it was rectified from: "
@@ -86,7 +90,8 @@ void check(const ReprojectJob& job, const Settings& settings) {
                                  job.outputs.cloud.empty() ? "mesh" : "cloud"));
   }
   if (!job.outputs.has_points()) {
-    settings.refuse_idle({"image", "unmatched", "confidence"}, "without --cloud and --mesh");
+    settings.refuse_idle({"image", "orientation", "unmatched", "confidence"},
+                         "without --cloud and --mesh");
   }
   if (!job.outputs.reads_unmatched()) {
     settings.refuse_idle({"unmatched"}, "with --cloud-filled");
@@ -123,7 +128,7 @@ MapFiles read_files(const ReprojectJob& job, RunReport& report) {
   MapFiles files;
   files.disparity_px = read_disparity(job.map, job.disparity_scale.value_or(0));
   if (!job.image.empty()) {
-    files.image = read_photograph(job.image);
+    files.image = read_photograph(job.image, job.reading);
     Photograph* const image[] = {&files.image};
     tell_remarks(scale_to_white_level(image, {}), job.common, report);
   }

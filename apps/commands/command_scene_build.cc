@@ -18,6 +18,7 @@ void add_file_settings(Settings& settings, SceneBuildJob& job) {
       "Neighbours that each image of --poses is matched with, the nearest in different "
       "directions");
   add_white_level_setting(settings, job.white_level);
+  add_reading_settings(settings, job.reading);
   Setting& output = settings.path("output", job.output, "SCENE",
                                   "Folder of the scene; existing results are kept");
   output.short_name = 'o';

@@ -10,6 +10,7 @@
 #include "apps/inputs/kitti_cameras_choice.h"
 #include "apps/reports/remarks.h"
 #include "engine/error.h"
+#include "engine/image/orientation.h"
 #include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
@@ -69,6 +70,7 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
   add_kitti_cameras_setting(settings, pair.kitti_cameras);
   add_scene_mask_settings(settings, pair.masks);
   add_white_level_setting(settings, pair.white_level);
+  add_reading_settings(settings, pair.reading);
   add_row_settings(settings, pair.rows);
 }
 
@@ -104,8 +106,9 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
                        Execution& execution, RunReport& report) {
   PairWithMaps result;
   report.timed_file_access("read", [&] {
-    result.left = read_photograph(pair.left);
-    result.right = read_photograph(pair.right);
+    result.left = read_photograph(pair.left, pair.reading);
+    result.right = read_photograph(pair.right, pair.reading);
+    require_equal_turns(result.left, result.right);
     if (pair.has_maps()) {
       const double scale = pair.disparity_scale.value_or(0);
       result.maps.left.disparity_px = read_disparity(pair.left_disparity, scale);

@@ -8,6 +8,7 @@
 #include "apps/reports/run_report.h"
 #include "apps/settings/common_options.h"
 #include "engine/execution.h"
+#include "engine/image/photograph_reading.h"
 #include "engine/io/images/scene_mask.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/match_settings.h"
@@ -31,6 +32,7 @@ struct PairInput {
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();
   std::optional<double> white_level;  ///< empty: see WhiteLevelSearch
+  PhotographReading reading;
   RowSettings rows;
   SceneMaskOptions masks;
 

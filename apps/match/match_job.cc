@@ -89,6 +89,7 @@ void add_file_settings(Settings& settings, MatchJob& job) {
   add_scene_mask_settings(settings, job.masks);
   add_volume_settings(settings, job.volume);
   add_white_level_setting(settings, job.white_level);
+  add_reading_settings(settings, job.reading);
   add_row_settings(settings, job.rows);
 }
 

@@ -8,6 +8,7 @@
 #include "apps/settings/applied_tuning.h"
 #include "apps/settings/common_options.h"
 #include "apps/settings/depth_settings.h"
+#include "engine/image/photograph_reading.h"
 #include "engine/io/images/scene_mask.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/match_settings.h"
@@ -42,6 +43,7 @@ struct MatchJob {
   /// Cameras stand one above the other, the left image's above: columns are searched.
   bool vertical = false;
   std::optional<double> white_level;  ///< of all images; empty: see WhiteLevelSearch
+  PhotographReading reading;
   RowSettings rows;
   SceneMaskOptions masks;
 

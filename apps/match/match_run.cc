@@ -21,6 +21,7 @@
 #include "apps/settings/applied_tuning.h"
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
+#include "engine/image/orientation.h"
 #include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/matching/options/method_names.h"
@@ -43,6 +44,7 @@ void require_equal_sizes(const MatchJob& job, const std::vector<Photograph>& ima
                               images[i].width(), images[i].height(), names[0], first.width(),
                               first.height()));
     }
+    require_equal_turns(first, images[i]);
   }
 }
 
@@ -74,7 +76,8 @@ Side side_of(const MatchJob& job) { return job.is_left() ? Side::kLeft : Side::k
 std::vector<Photograph> read_images(const MatchJob& job, RunReport& report) {
   std::vector<Photograph> images;
   for (const std::string& input : job.inputs()) {
-    images.push_back(report.timed_file_access("read", [&] { return read_photograph(input); }));
+    images.push_back(
+        report.timed_file_access("read", [&] { return read_photograph(input, job.reading); }));
   }
   require_equal_sizes(job, images);
   std::vector<Photograph*> all;

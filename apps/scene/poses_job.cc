@@ -13,6 +13,7 @@
 #include "apps/process/outputs.h"
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "engine/error.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/frame_source.h"
@@ -220,7 +221,10 @@ CameraEstimate estimate_of(const ScenePosesJob& job, const std::vector<fs::path>
   std::optional<Progress> progress;
   std::string step_shown;
   return estimate_cameras(
-      names, [&](int image) { return read_photograph(files[static_cast<std::size_t>(image)]); },
+      names,
+      [&](int image) {
+        return read_photograph(files[static_cast<std::size_t>(image)], job.reading);
+      },
       job.estimation,
       [&](std::string_view step, int done, int total) {
         if (step != step_shown) {
@@ -271,7 +275,8 @@ int estimate_poses(ScenePosesJob& job, const Settings& settings) {
   RunReport& report = work.report;
 
   const Photograph first =
-      report.timed_file_access("read", [&] { return read_photograph(files[0]); });
+      report.timed_file_access("read", [&] { return read_photograph(files[0], job.reading); });
+  tell_remarks(first.origin.remarks, job.common, report);
   const ImageSize size{first.width(), first.height()};
   if (size_of_lens.width_px != 0 &&
       (size_of_lens.width_px != size.width_px || size_of_lens.height_px != size.height_px)) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/settings/common_options.h"
+#include "engine/image/photograph_reading.h"
 #include "engine/options/settings.h"
 #include "engine/pose_estimation/camera_estimation.h"
 
@@ -23,6 +24,7 @@ struct ScenePosesJob {
   std::string output;
   std::optional<KnownDistance> distance;
   CameraEstimationOptions estimation;
+  PhotographReading reading;
   CommonOptions common;
 };
 

@@ -78,7 +78,8 @@ int run_scene_build(const SceneBuildJob& job, const Settings& settings) {
                                   .copy_images = job.copy_images,
                                   .check_rectification = job.check_rectification,
                                   .neighbours = job.neighbours,
-                                  .white_level = job.white_level};
+                                  .white_level = job.white_level,
+                                  .reading = job.reading};
   options.validate();
   CommandWork work(settings, job.common, reported_settings(settings, job.match));
   RunReport& report = work.report;

@@ -5,6 +5,7 @@
 
 #include "apps/scene/scene_images.h"
 #include "apps/settings/common_options.h"
+#include "engine/image/photograph_reading.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/settings.h"
@@ -21,6 +22,7 @@ struct SceneBuildJob {
   bool copy_images = false;
   bool check_rectification = true;
   std::optional<double> white_level;
+  PhotographReading reading;
   int neighbours = SceneBuildOptions{}.neighbours;
 };
 

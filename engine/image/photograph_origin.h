@@ -2,6 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
+
+#include "engine/image/orientation.h"
+#include "engine/remark.h"
 
 namespace vantage {
 
@@ -23,6 +27,9 @@ struct PhotographOrigin {
   /// 65535 or 1 once a photograph was scaled to that.
   std::optional<double> white_level = {};
   std::optional<LossyCoding> coding = {};  ///< empty: lossless, or not known
+  /// How its pixels were turned when it was read.
+  Orientation turn = Orientation::kAsStored;
+  std::vector<Remark> remarks = {};  ///< what its reader assumed
 };
 
 }  // namespace vantage

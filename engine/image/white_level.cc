@@ -54,9 +54,18 @@ double WhiteLevel::apply(Photograph& photograph) const {
 }
 
 void WhiteLevelSearch::add(const Photograph& photograph) {
+  for (const Remark& remark : photograph.origin.remarks) {
+    if (std::none_of(remarks_.begin(), remarks_.end(), [&](const Remark& other) {
+          return other.kind == remark.kind && other.subject == remark.subject;
+        })) {
+      remarks_.push_back(remark);
+    }
+  }
   const std::size_t type = photograph.pixels.index();
   if (type > type_) {
+    std::vector<Remark> remarks = std::move(remarks_);
     *this = WhiteLevelSearch(given_);
+    remarks_ = std::move(remarks);
     type_ = type;
   }
   if (type < type_ || type == 0 || given_) {
@@ -97,7 +106,7 @@ double WhiteLevelSearch::white_of_floats() const {
 }
 
 WhiteLevel WhiteLevelSearch::found() const {
-  WhiteLevel level{type_, WhiteLevel::kOfTypes[type_]};
+  WhiteLevel level{type_, WhiteLevel::kOfTypes[type_], remarks_};
   if (given_) {
     const double max = type_ < 2 ? level.value : std::numeric_limits<float>::max();
     if (!(*given_ > 0 && *given_ <= max)) {

@@ -16,7 +16,8 @@ struct WhiteLevel {
 
   std::size_t type = 0;  ///< photographs of other types stay as they are
   double value = kOfTypes[0];
-  std::vector<Remark> remarks = {};  ///< "white level: 4095 (12 bits), from the brightest pixels"
+  /// Of readers, and "white level: 4095 (12 bits), from the brightest pixels".
+  std::vector<Remark> remarks = {};
 
   [[nodiscard]] bool scales(const Photograph& photograph) const {
     return photograph.pixels.index() == type && value != kOfTypes[type];
@@ -39,6 +40,7 @@ class WhiteLevelSearch {
   /// `given`: instead of all that, for photographs of any type.
   explicit WhiteLevelSearch(std::optional<double> given = {}) : given_(given) {}
 
+  /// Also takes the remarks of its reader, which found() repeats.
   void add(const Photograph& photograph);
   /// Whether more photographs of the rig could change the result.
   [[nodiscard]] bool guesses() const { return type_ != 0 && !given_ && !stated_; }
@@ -53,6 +55,7 @@ class WhiteLevelSearch {
   std::size_t type_ = 0;
   float largest_ = 0;            ///< value whose white is not stated
   bool is_of_8_bits_ = true;     ///< all 16-bit values are multiples of 257
+  std::vector<Remark> remarks_;  ///< of readers, one of each kind and subject
   std::vector<float> sample_;    ///< of floats
   std::size_t values_seen_ = 0;  ///< floats
 };

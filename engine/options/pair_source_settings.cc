@@ -67,6 +67,14 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
                    "Frame t is the left image, frame t + K the right image");
   add_frame_step_setting(settings, input.every);
   add_white_level_setting(settings, input.white_level);
+  add_reading_settings(settings, input.reading);
+}
+
+void add_reading_settings(Settings& settings, PhotographReading& reading) {
+  settings.choice<bool>("orientation", reading.turns_upright,
+                        {{"upright", true}, {"stored", false}},
+                        "Turn images as their EXIF orientation, or the display matrix of a film, "
+                        "says; or leave them as they are stored");
 }
 
 void add_white_level_setting(Settings& settings, std::optional<double>& white_level) {

@@ -9,6 +9,7 @@
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
 #include "engine/image/photograph.h"
+#include "engine/image/photograph_reading.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/search/match_report.h"
 #include "engine/rectification/vertical_error.h"
@@ -38,6 +39,7 @@ struct SceneBuildOptions {
   /// Neighbours that every posed camera is joined to, 1 to kMaxNeighbours.
   int neighbours = 4;
   std::optional<double> white_level = {};  ///< of all images, see WhiteLevelSearch
+  PhotographReading reading = {};
 
   /// Throws UsageError as MatchOptions does, and for a search in two dimensions.
   void validate() const;

@@ -92,7 +92,7 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
   WhiteLevelSearch white(options_.white_level);
   Photograph first;
   for (const SceneImage& image : images_) {
-    Photograph photograph = read_photograph(image.file);
+    Photograph photograph = read_photograph(image.file, options_.reading);
     require_size_of_camera(image, photograph);
     white.add(photograph);
     if (&image == &images_.front()) {
@@ -102,10 +102,12 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
     }
     scene_.images.push_back(stored_image(image));
   }
-  if (WhiteLevel level = white.found(); level.scales(first)) {
+  WhiteLevel level = white.found();
+  if (level.scales(first)) {
     scene_.white_level = level.value;
-    remarks_ = std::move(level.remarks);
   }
+  remarks_ = std::move(level.remarks);
+  scene_.reading = options_.reading;
   scene_.width_px = first.width();
   scene_.height_px = first.height();
   find_edges();
@@ -155,9 +157,9 @@ bool SceneBuilder::is_finished(const StoredEdge& stored, const StoredScene& befo
 
 void SceneBuilder::keep_finished_edges() {
   const std::optional<StoredScene> before = find_scene(folder_);
-  const bool is_same_work = before && before->settings == scene_.settings &&
-                            before->white_level == scene_.white_level &&
-                            before->focal_length_px == scene_.focal_length_px;
+  const bool is_same_work =
+      before && before->settings == scene_.settings && before->white_level == scene_.white_level &&
+      before->reading == scene_.reading && before->focal_length_px == scene_.focal_length_px;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const SceneEdge& edge = edges_[i];
     const bool are_same_images =

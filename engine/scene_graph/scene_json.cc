@@ -180,6 +180,7 @@ StoredScene scene_of(const Json& json, const std::string& name) {
       throw Error(fmt::format("{}: white_level is not above 0", name));
     }
   }
+  scene.reading.turns_upright = json.value("orientation", "upright") != "stored";
   for (const Json& image : json.at("images")) {
     scene.images.push_back(
         {.file = name_of_stored(image.at("file").get<std::string>()),
@@ -228,6 +229,9 @@ std::string scene_text(const StoredScene& scene) {
                {"edges", edges}};
   if (scene.white_level) {
     json["white_level"] = *scene.white_level;
+  }
+  if (!scene.reading.turns_upright) {
+    json["orientation"] = "stored";
   }
   if (scene.is_posed()) {
     add_posed_values(scene, json);

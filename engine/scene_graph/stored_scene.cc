@@ -50,7 +50,7 @@ Mask read_mask(const fs::path& file, const Photograph& image) {
 }  // namespace
 
 Photograph StoredScene::read_image(const fs::path& file) const {
-  Photograph image = read_photograph(file);
+  Photograph image = read_photograph(file, reading);
   if (white_level) {
     WhiteLevel{image.pixels.index(), *white_level}.apply(image);
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/image/photograph_reading.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/scene_graph/scene_camera.h"
 #include "engine/scene_graph/scene_layout.h"
@@ -59,6 +60,7 @@ struct StoredScene {
   int width_px = 0;             ///< of all images
   int height_px = 0;
   std::optional<double> white_level;  ///< of all images; empty: that of their type
+  PhotographReading reading;
   /// SceneLayout::unit_length(), or median_length() of posed cameras.
   double unit_length = 1;
   /// Of posed cameras: maps hold focal_length_px · length of the edge / depth in the own camera.

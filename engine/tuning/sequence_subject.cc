@@ -50,7 +50,7 @@ int SequenceSubject::work(Runner& runner) {
   steps.prepare = [&](int slot) {
     const auto decode = [](const std::vector<std::uint8_t>& file, const char* name,
                            Photograph& photograph) {
-      photograph = decode_image(FileBytes(file, name), std::move(photograph)).photograph;
+      photograph = decode_image(FileBytes(file, name), {}, std::move(photograph)).photograph;
     };
     decode(left_file_, "left.png", at(slot).left);
     decode(right_file_, "right.png", at(slot).right);

@@ -60,11 +60,11 @@ TEST(PhotographIo, MemoryOfPhotographsAndFilesIsReused) {
     Photograph photograph = read_photograph(folder / name);
     const std::uint8_t* memory = std::get<Image<std::uint8_t>>(photograph.pixels).row(0);
     write_photograph(folder / name, second);
-    photograph = read_photograph(folder / name, std::move(photograph));
+    photograph = read_photograph(folder / name, {}, std::move(photograph));
     EXPECT_EQ(std::get<Image<std::uint8_t>>(photograph.pixels).row(0), memory);
     EXPECT_TRUE(same(photograph, second));
     // Of another type and size.
-    photograph = read_photograph(folder / name, noise<std::uint16_t>(3, 2, 1));
+    photograph = read_photograph(folder / name, {}, noise<std::uint16_t>(3, 2, 1));
     EXPECT_TRUE(same(photograph, second));
   }
   for (const char* name : {"a.png", "a.tiff", "a.ppm"}) {

@@ -8,6 +8,9 @@
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <string_view>
+
+#include "engine/io/images/exif.h"
 
 namespace vantage {
 namespace {
@@ -67,8 +70,9 @@ bool is_huffman_frame(int marker) { return marker <= 0xC7; }
 
 /// Looks for the end marker first, because "is truncated" is clearer than a decoder's message.
 /// Segments are skipped: a thumbnail in one has its own markers.
-void check_jpeg(const FileBytes& file) {
+Orientation check_jpeg(const FileBytes& file) {
   const auto bytes = file.all();
+  Orientation orientation = Orientation::kAsStored;
   bool has_frame = false;
   bool has_scan = false;
   std::size_t offset = 2;
@@ -86,7 +90,11 @@ void check_jpeg(const FileBytes& file) {
       break;
     }
     const std::size_t length = file.integer<std::uint16_t>(offset + 1, kBig);
-    (void)file.part(offset + 1, length);
+    const auto segment = file.part(offset + 1, length);
+    constexpr std::string_view kExif("Exif\0\0", 6);
+    if (marker == 0xE1 && length > 8 && file.has_at(offset + 3, kExif)) {
+      orientation = exif_orientation(segment.subspan(8));
+    }
     if (is_start_of_frame(marker)) {
       const int width = file.integer<std::uint16_t>(offset + 6, kBig);
       const int height = file.integer<std::uint16_t>(offset + 4, kBig);
@@ -103,6 +111,7 @@ void check_jpeg(const FileBytes& file) {
   if (!has_frame || !has_scan) {
     file.fail("is damaged, expected a JPEG frame header and a scan");
   }
+  return orientation;
 }
 
 /// Bytes that a byte of TIFF data can stand for; empty: no limit is known.
@@ -127,7 +136,7 @@ std::optional<long long> max_tiff_bytes_per_byte(int compression, long long pixe
 /// The first directory of a classic TIFF file. libtiff checks what it reads itself. Returns what
 /// the file states as white: WhiteLevel (of DNG), else 2ⁿ − 1 of the bits of MaxSampleValue.
 /// Decoders scale 10, 12 and 14 bits to 16.
-std::optional<double> check_tiff(const FileBytes& file) {
+StatedByFile check_tiff(const FileBytes& file) {
   const std::endian order = file.has_at(0, "II") ? kLittle : kBig;
   if (file.integer<std::uint16_t>(2, order) != 42) {
     file.fail("is a BigTIFF file, expected classic TIFF");
@@ -183,16 +192,16 @@ std::optional<double> check_tiff(const FileBytes& file) {
     check_holds_pixels(file, width, height, width * height * pixel_bits / 8 / *max);
   }
   if (bits > 8 && bits < 16) {
-    return 65535;
+    return {.white_level = 65535};
   }
   white = white == 0 && max_sample > 0 && max_sample < 65535
               ? (1LL << std::bit_width(static_cast<unsigned>(max_sample))) - 1
               : white;
-  return white > 0 && white < 65535 ? std::optional<double>(white) : std::nullopt;
+  return {.white_level = white > 0 && white < 65535 ? std::optional<double>(white) : std::nullopt};
 }
 
-void check_webp(const FileBytes& file) {
-  (void)file.part(8, file.integer<std::uint32_t>(4, kLittle));
+Orientation check_webp(const FileBytes& file) {
+  const std::size_t end = 8 + file.part(8, file.integer<std::uint32_t>(4, kLittle)).size();
   if (file.has_at(12, "VP8X")) {
     const auto side = [&](std::size_t offset) {
       return 1 + (file.integer<std::uint16_t>(offset, kLittle) | file.byte(offset + 2) << 16);
@@ -205,6 +214,14 @@ void check_webp(const FileBytes& file) {
     file.check_dimensions(file.integer<std::uint16_t>(26, kLittle) & 0x3FFF,
                           file.integer<std::uint16_t>(28, kLittle) & 0x3FFF);
   }
+  for (std::size_t chunk = 12; chunk + 8 <= end;) {
+    const std::size_t length = file.integer<std::uint32_t>(chunk + 4, kLittle);
+    if (file.has_at(chunk, "EXIF")) {
+      return exif_orientation(file.part(chunk + 8, length));
+    }
+    chunk += 8 + length + length % 2;
+  }
+  return Orientation::kAsStored;
 }
 
 std::string zero_ended_text(const FileBytes& file, std::size_t offset) {
@@ -302,19 +319,17 @@ ImageFormat detect_image_format(const FileBytes& file) {
   file.fail("is not an image, expected PNG, JPEG, TIFF, PNM, PFM, BMP, WebP or EXR");
 }
 
-std::optional<double> check_image_header(const FileBytes& file, ImageFormat format) {
+StatedByFile check_image_header(const FileBytes& file, ImageFormat format) {
   switch (format) {
     case ImageFormat::kBmp:
       check_bmp(file);
       break;
     case ImageFormat::kJpeg:
-      check_jpeg(file);
-      break;
+      return {.orientation = check_jpeg(file)};
     case ImageFormat::kTiff:
       return check_tiff(file);
     case ImageFormat::kWebp:
-      check_webp(file);
-      break;
+      return {.orientation = check_webp(file)};
     case ImageFormat::kExr:
       check_exr(file);
       break;
@@ -323,7 +338,7 @@ std::optional<double> check_image_header(const FileBytes& file, ImageFormat form
     case ImageFormat::kPfm:
       break;
   }
-  return std::nullopt;
+  return {};
 }
 
 }  // namespace vantage

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "engine/image/orientation.h"
 #include "engine/io/files/file_bytes.h"
 
 namespace vantage {
@@ -12,11 +13,16 @@ enum class ImageFormat { kPng, kJpeg, kTiff, kPnm, kPfm, kBmp, kWebp, kExr };
 /// else.
 ImageFormat detect_image_format(const FileBytes& file);
 
+/// What a header says of the pixels.
+struct StatedByFile {
+  std::optional<double> white_level = {};  ///< PhotographOrigin::white_level, of TIFF
+  Orientation orientation = Orientation::kAsStored;
+};
+
 /// Read by our own code, because OpenCV allocates what a header says before it looks at the data.
 /// Checks before decoding: dimensions in bounds and, for BMP, JPEG, WebP and EXR, that the file is
 /// complete, for TIFF and JPEG that it can hold so many pixels. For the formats that OpenCV
-/// decodes, except PNG (see png_decoder.h). Returns PhotographOrigin::white_level, if a TIFF file
-/// states it. Throws Error.
-std::optional<double> check_image_header(const FileBytes& file, ImageFormat format);
+/// decodes, except PNG (see png_decoder.h). Throws Error.
+StatedByFile check_image_header(const FileBytes& file, ImageFormat format);
 
 }  // namespace vantage

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/orientation.h"
 #include "engine/image/white_level.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_bytes.h"
@@ -63,8 +64,7 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
     const QuietOpenCv quiet;
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
                           const_cast<std::uint8_t*>(bytes.data()));
-    // "Unchanged" keeps depth and channels and ignores the EXIF orientation: calibrations refer to
-    // the stored image.
+    // "Unchanged" keeps depth and channels and ignores the EXIF orientation.
     decode_by_opencv(encoded, decoded);
   } catch (const cv::Exception&) {
     decoded.release();
@@ -172,9 +172,10 @@ void check_capability(const std::filesystem::path& path, const std::string& exte
   }
 }
 
-DecodedImage decode(const FileBytes& file, Photograph& memory) {
+DecodedImage decode(const FileBytes& file, const PhotographReading& reading, Photograph& memory) {
   const ImageFormat format = detect_image_format(file);
   DecodedImage result;
+  StatedByFile stated;
   switch (format) {
     case ImageFormat::kPfm:
       result.photograph.pixels = decode_pfm(file);
@@ -192,17 +193,20 @@ DecodedImage decode(const FileBytes& file, Photograph& memory) {
       if (const int bits = structure.significant_bits; bits > 0 && bits < structure.bit_depth) {
         result.photograph.origin.white_level = (1 << bits) - 1;
       }
+      stated.orientation = structure.orientation;
       break;
     }
     case ImageFormat::kJpeg:
-      check_image_header(file, format);
+      stated = check_image_header(file, format);
       result.photograph = decode_jpeg(file, memory);
-      return result;
-    default: {
-      const std::optional<double> white = check_image_header(file, format);
+      break;
+    default:
+      stated = check_image_header(file, format);
       result.photograph = decode_with_opencv(file, file.all(), memory);
-      result.photograph.origin.white_level = white;
-    }
+      result.photograph.origin.white_level = stated.white_level;
+  }
+  if (reading.turns_upright) {
+    turn_upright(result.photograph, stated.orientation);
   }
   if (std::holds_alternative<Image<std::uint16_t>>(result.photograph.pixels)) {
     result.max_value = 65535;
@@ -224,9 +228,10 @@ void check_finite(const FileBytes& file, const Image<float>& image) {
 
 }  // namespace
 
-DecodedImage decode_image(const FileBytes& file, Photograph memory) {
+DecodedImage decode_image(const FileBytes& file, const PhotographReading& reading,
+                          Photograph memory) {
   try {
-    return decode(file, memory);
+    return decode(file, reading, memory);
   } catch (const OutOfMemory& error) {
     file.fail(error.what());
   } catch (const std::bad_alloc&) {
@@ -264,10 +269,11 @@ void encode_photograph(const std::filesystem::path& path, const Photograph& phot
   }
 }
 
-Photograph read_photograph(const std::filesystem::path& path, Photograph memory) {
+Photograph read_photograph(const std::filesystem::path& path, const PhotographReading& reading,
+                           Photograph memory) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
-  DecodedImage stored = decode_image(file, std::move(memory));
+  DecodedImage stored = decode_image(file, reading, std::move(memory));
   if (const auto* floats = std::get_if<Image<float>>(&stored.photograph.pixels)) {
     check_finite(file, *floats);
     return std::move(stored.photograph);

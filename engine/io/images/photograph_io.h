@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/image/photograph.h"
+#include "engine/image/photograph_reading.h"
 #include "engine/io/files/file_bytes.h"
 
 namespace vantage {
@@ -18,7 +19,8 @@ struct DecodedImage {
 
 /// Decodes an image of any format that read_photograph() supports. Reuses `memory` if it has the
 /// image's depth and size. Throws Error, also when out of memory.
-DecodedImage decode_image(const FileBytes& file, Photograph memory = {});
+DecodedImage decode_image(const FileBytes& file, const PhotographReading& reading = {},
+                          Photograph memory = {});
 
 /// Encodes an image file to `bytes`, whose memory is reused, in the format given by the extension
 /// of `path`. Floats of any value. Throws UsageError for an unknown extension, Error when the
@@ -28,11 +30,13 @@ void encode_photograph(const std::filesystem::path& path, const Photograph& phot
 
 /// Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR (by OpenCV) and PFM: 8-bit, 16-bit and float; grey,
 /// RGB or RGBA. The file's content determines the format, not its name; PNM values are stretched
-/// from the file's maximum value to the type's. EXIF orientation, gamma and colour profiles are
-/// ignored. Reuses `memory` if it has the photograph's depth and size. Throws Error naming the file
-/// when it is missing, empty, truncated, not an image, too large according to its header, or float
-/// with NaN or infinity. Thread rule: may be called concurrently.
-Photograph read_photograph(const std::filesystem::path& path, Photograph memory = {});
+/// from the file's maximum value to the type's. Turned as its EXIF orientation (JPEG, PNG, WebP,
+/// TIFF) says; gamma and colour profiles are ignored. Reuses `memory` if it has the photograph's
+/// depth and size. Throws Error naming the file when it is missing, empty, truncated, not an image,
+/// too large according to its header, or float with NaN or infinity. Thread rule: may be called
+/// concurrently.
+Photograph read_photograph(const std::filesystem::path& path, const PhotographReading& reading = {},
+                           Photograph memory = {});
 
 /// Writes by extension (.png .jpg .tiff .bmp .ppm .pgm .webp .exr .pfm), atomically. Throws Error
 /// when the folder cannot be written or the format cannot hold the depth or channels, UsageError

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/images/exif.h"
+
 namespace vantage {
 namespace {
 
@@ -214,6 +216,8 @@ PngStructure check_png_structure(const FileBytes& file) {
       structure.pixel_data.push_back(chunk.subspan(8, length));
     } else if (type == "sBIT" && length > 0) {
       structure.significant_bits = *std::max_element(chunk.begin() + 8, chunk.end() - 4);
+    } else if (type == "eXIf") {
+      structure.orientation = exif_orientation(chunk.subspan(8, length));
     } else if (type == "tRNS") {
       structure.has_transparent_colour = true;
     }

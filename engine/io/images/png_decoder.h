@@ -19,6 +19,7 @@ struct PngStructure {
   int colour_type = 0;       ///< 0 grey, 2 RGB, 3 palette, 4 grey with alpha, 6 RGBA
   int significant_bits = 0;  ///< of an sBIT chunk, of the channel that has most; 0: not stated
   bool interlaced = false;
+  Orientation orientation = Orientation::kAsStored;       ///< of an eXIf chunk
   bool has_transparent_colour = false;                    ///< a tRNS chunk
   std::vector<std::span<const std::uint8_t>> pixel_data;  ///< contents of the IDAT chunks
   /// Complete chunks, with length, name and checksum, that pixels depend on: IHDR, PLTE, tRNS,

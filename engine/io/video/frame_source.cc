@@ -13,7 +13,7 @@ namespace vantage {
 
 void FetchedFrame::decode() {
   if (!file.empty()) {
-    photograph = read_photograph(file, std::move(photograph));
+    photograph = read_photograph(file, reading, std::move(photograph));
   } else if (!picture.is_empty()) {
     picture.convert(photograph);
   }
@@ -30,25 +30,30 @@ bool FrameSource::next(Photograph& frame) {
   return true;
 }
 
-std::unique_ptr<FrameSource> open_frame_source(const std::string& spec) {
+std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
+                                               const PhotographReading& reading) {
   namespace fs = std::filesystem;
+  const auto with_reading = [&](std::unique_ptr<ImageSequence> images) {
+    images->set_reading(reading);
+    return images;
+  };
   std::error_code ignored;
   if (fs::is_directory(spec, ignored)) {
-    return open_image_folder(spec);
+    return with_reading(open_image_folder(spec));
   }
   if (fs::exists(spec, ignored)) {
     if (has_image_extension(spec)) {
       const fs::path path = spec;
-      return std::make_unique<ListedImages>(spec, path.parent_path(),
-                                            std::vector<fs::path>{path.filename()});
+      return with_reading(std::make_unique<ListedImages>(spec, path.parent_path(),
+                                                         std::vector<fs::path>{path.filename()}));
     }
     return std::make_unique<VideoFrames>(spec);
   }
   if (spec.find('%') != std::string::npos) {
-    return open_image_pattern(spec);
+    return with_reading(open_image_pattern(spec));
   }
   if (spec.find_first_of("*?[") != std::string::npos) {
-    return open_image_glob(spec);
+    return with_reading(open_image_glob(spec));
   }
   throw Error(fmt::format("{}: no such file or folder, expected images or a video", spec));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/image/photograph.h"
+#include "engine/image/photograph_reading.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/video_picture.h"
 
@@ -18,6 +19,7 @@ constexpr int kUnknownFrames = 1 << 30;
 /// A frame from a source: fetched in order by one thread, decoded by any.
 struct FetchedFrame {
   std::filesystem::path file;  ///< image file still to be read; empty: none
+  PhotographReading reading;   ///< of `file`
   VideoPicture picture;        ///< picture still to be converted to the photograph; empty: none
   Photograph photograph;       ///< reused from frame to frame
   int frames_missing = 0;      ///< missing frames of a video between the previous one and it
@@ -89,6 +91,7 @@ class FrameSource {
 ///
 /// Throws Error when nothing matches, a folder holds no image, or a video does not open; UsageError
 /// for a malformed pattern.
-std::unique_ptr<FrameSource> open_frame_source(const std::string& spec);
+std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
+                                               const PhotographReading& reading = {});
 
 }  // namespace vantage

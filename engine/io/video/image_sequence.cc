@@ -48,6 +48,7 @@ bool ImageSequence::fetch(FetchedFrame& frame) {
     return false;
   }
   frame.file = path(next_index_++);
+  frame.reading = reading_;
   frame.frames_missing = 0;
   frame.remarks.clear();
   return true;
@@ -78,7 +79,7 @@ std::string ImageSequence::identity() const {
   return fmt::format("images {}: {}", name_, files.to_string());
 }
 
-std::unique_ptr<FrameSource> open_image_folder(const std::string& folder) {
+std::unique_ptr<ImageSequence> open_image_folder(const std::string& folder) {
   std::vector<fs::path> names = list_names(folder, [](const std::string& name) {
     return !name.starts_with('.') && has_image_extension(name);
   });
@@ -88,7 +89,7 @@ std::unique_ptr<FrameSource> open_image_folder(const std::string& folder) {
   return std::make_unique<ListedImages>(folder, folder, std::move(names));
 }
 
-std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec) {
+std::unique_ptr<ImageSequence> open_image_pattern(const std::string& spec) {
   const fs::path path = spec;
   NumberPattern pattern = parse_number_pattern(path.filename().string(), spec);
   std::optional<int> smallest;
@@ -120,7 +121,7 @@ std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec) {
                                           largest - *smallest + 1);
 }
 
-std::unique_ptr<FrameSource> open_image_glob(const std::string& spec) {
+std::unique_ptr<ImageSequence> open_image_glob(const std::string& spec) {
   const fs::path path = spec;
   const std::string pattern = path.filename().string();
   // No escapes: a backslash is an ordinary character.

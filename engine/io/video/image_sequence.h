@@ -14,6 +14,8 @@ namespace vantage {
 /// missing or bad file is one bad frame.
 class ImageSequence : public FrameSource {
  public:
+  /// How its files are read.
+  void set_reading(const PhotographReading& reading) { reading_ = reading; }
   bool fetch(FetchedFrame& frame) final;
   void skip_to(int index) final;
   [[nodiscard]] int frame_count() const final { return count_; }
@@ -36,6 +38,7 @@ class ImageSequence : public FrameSource {
   std::string name_;
   int count_;
   int next_index_ = 0;
+  PhotographReading reading_;
 };
 
 /// Files in the order of a list.
@@ -81,9 +84,9 @@ class NumberedImages : public ImageSequence {
 };
 
 /// Opens a folder's images, a printf pattern or a glob pattern; see open_frame_source().
-std::unique_ptr<FrameSource> open_image_folder(const std::string& folder);
-std::unique_ptr<FrameSource> open_image_pattern(const std::string& spec);
-std::unique_ptr<FrameSource> open_image_glob(const std::string& spec);
+std::unique_ptr<ImageSequence> open_image_folder(const std::string& folder);
+std::unique_ptr<ImageSequence> open_image_pattern(const std::string& spec);
+std::unique_ptr<ImageSequence> open_image_glob(const std::string& spec);
 
 /// Whether the extension is that of an image format that read_photograph() supports.
 bool has_image_extension(const std::filesystem::path& path);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/orientation.h"
 #include "engine/io/video/image_sequence.h"
 #include "engine/io/video/raw_video.h"
 #include "engine/sequence/pairs/every_nth_pair.h"
@@ -28,7 +29,8 @@ constexpr int kPairsForWhiteLevel = 8;
 constexpr double kMinTakenSeconds = 0.001;
 constexpr double kMaxTakenSeconds = 86400;
 
-std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file) {
+std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file,
+                                           const PhotographReading& reading) {
   std::vector<std::filesystem::path> left;
   std::vector<std::filesystem::path> right;
   std::vector<PairDetails> details;
@@ -38,8 +40,10 @@ std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file) {
     details.push_back(std::move(pair.details));
   }
   const auto open_column = [&](const char* column, std::vector<std::filesystem::path> names) {
-    return std::make_unique<ListedImages>(fmt::format("{} ({} column)", file.string(), column),
-                                          file.parent_path(), std::move(names));
+    auto images = std::make_unique<ListedImages>(
+        fmt::format("{} ({} column)", file.string(), column), file.parent_path(), std::move(names));
+    images->set_reading(reading);
+    return images;
   };
   auto pairs = std::make_unique<TwoCameraPairs>(open_column("left", std::move(left)),
                                                 open_column("right", std::move(right)), 0, false);
@@ -85,23 +89,25 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
         *options.packing);
   }
   if (!options.stereo.empty()) {
-    return std::make_unique<PackedPairs>(open_frame_source(options.stereo), *options.packing);
+    return std::make_unique<PackedPairs>(open_frame_source(options.stereo, options.reading),
+                                         *options.packing);
   }
   if (!options.pairs.empty()) {
-    return open_pair_list(options.pairs);
+    return open_pair_list(options.pairs, options.reading);
   }
   if (!options.sequence.empty()) {
-    return make_moving_camera_pairs(open_frame_source(options.sequence), options.step);
+    return make_moving_camera_pairs(open_frame_source(options.sequence, options.reading),
+                                    options.step);
   }
-  auto pairs = std::make_unique<TwoCameraPairs>(open_frame_source(options.left),
-                                                open_frame_source(options.right),
+  auto pairs = std::make_unique<TwoCameraPairs>(open_frame_source(options.left, options.reading),
+                                                open_frame_source(options.right, options.reading),
                                                 options.offset_frames, true);
   if (options.more.empty()) {
     return pairs;
   }
   std::vector<std::unique_ptr<FrameSource>> more;
   for (const std::string& source : options.more) {
-    more.push_back(open_frame_source(source));
+    more.push_back(open_frame_source(source, options.reading));
   }
   return std::make_unique<SeveralCameras>(std::move(pairs), std::move(more));
 }
@@ -154,6 +160,11 @@ void PairSource::make_images(FramePair& pair) const {
   if (pair.wants_right) {
     pair.fetched[1].decode();
     std::swap(pair.right, pair.fetched[1].photograph);
+    try {
+      require_equal_turns(pair.left, pair.right);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", describe(pair.index), error.what()));
+    }
   }
 }
 

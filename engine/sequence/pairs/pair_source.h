@@ -102,6 +102,7 @@ struct PairSourceOptions {
   /// Of all images, see WhiteLevelSearch. Empty: what files state, else what up to 8 pairs show,
   /// evenly spaced from the first to the last; of films and streams that of their pixel format.
   std::optional<double> white_level;
+  PhotographReading reading;
 
   /// Throws UsageError naming the field, its value and what was expected.
   void validate() const;

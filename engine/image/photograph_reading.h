@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+
+namespace vantage {
+
+/// How files and films become photographs.
+struct PhotographReading {
+  /// Turned as the EXIF orientation of a file or the display matrix of a film says; else left as
+  /// stored.
+  bool turns_upright = true;
+  /// Of files with other channels than grey, RGB and alpha: the band that is read, counted from 1.
+  /// Empty: see read_photograph().
+  std::optional<int> band = {};
+
+  friend bool operator==(const PhotographReading&, const PhotographReading&) = default;
+};
+
+}  // namespace vantage
