@@ -78,43 +78,19 @@ void make_anaglyph(const Image<T>& left, const Image<T>& right, const AnaglyphMa
   }
 }
 
-template <typename T>
-void interleave(const Image<T>& left, const Image<T>& right, InterleavedStereo order,
-                Image<T>& shown) {
-  const Image<T>& first = order.right_first ? right : left;
-  const Image<T>& second = order.right_first ? left : right;
-  const int channels = left.channels();
-  shown.resize(left.width() * (order.columns ? 2 : 1), left.height() * (order.columns ? 1 : 2),
-               channels);
-  for (int y = 0; y < left.height(); ++y) {
-    if (!order.columns) {
-      const auto values = static_cast<std::size_t>(left.width() * channels);
-      std::copy_n(first.row(y), values, shown.row(2 * y));
-      std::copy_n(second.row(y), values, shown.row(2 * y + 1));
-      continue;
-    }
-    for (int x = 0; x < left.width(); ++x) {
-      std::copy_n(first.row(y) + x * channels, channels, shown.row(y) + 2 * x * channels);
-      std::copy_n(second.row(y) + x * channels, channels, shown.row(y) + (2 * x + 1) * channels);
-    }
-  }
-}
-
 }  // namespace
 
 const std::vector<std::pair<std::string_view, StereoDisplay>>& stereo_display_names() {
   static const auto kNames = [] {
     std::vector<std::pair<std::string_view, StereoDisplay>> names;
     for (const auto& [name, packing] : stereo_packing_names()) {
-      names.emplace_back(name, packing);
+      if (packing.layout != StereoLayout::kFrames) {
+        names.emplace_back(name, packing);
+      }
     }
     names.emplace_back("arcd", Anaglyph::kRedCyan);
     names.emplace_back("agmd", Anaglyph::kGreenMagenta);
     names.emplace_back("aybd", Anaglyph::kYellowBlue);
-    names.emplace_back("irl", InterleavedStereo{});
-    names.emplace_back("irr", InterleavedStereo{.right_first = true});
-    names.emplace_back("icl", InterleavedStereo{.columns = true});
-    names.emplace_back("icr", InterleavedStereo{.columns = true, .right_first = true});
     return names;
   }();
   return kNames;
@@ -129,13 +105,8 @@ void show_stereo(const Photograph& left, const Photograph& right, const StereoDi
   require_equal_shapes(left, right);
   std::visit(
       [&]<typename T>(const Image<T>& left_image) {
-        Image<T>& result = pixels_of<T>(shown);
-        const auto& right_image = std::get<Image<T>>(right.pixels);
-        if (const auto* order = std::get_if<InterleavedStereo>(&display)) {
-          interleave(left_image, right_image, *order, result);
-        } else {
-          make_anaglyph(left_image, right_image, matrix_of(std::get<Anaglyph>(display)), result);
-        }
+        make_anaglyph(left_image, std::get<Image<T>>(right.pixels),
+                      matrix_of(std::get<Anaglyph>(display)), pixels_of<T>(shown));
       },
       left.pixels);
 }

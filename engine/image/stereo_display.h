@@ -13,19 +13,11 @@ namespace vantage {
 /// One picture for two-colour filter glasses, left first.
 enum class Anaglyph { kRedCyan, kGreenMagenta, kYellowBlue };
 
-/// Alternating rows (or columns) of both images, all of them: twice as high (wide) as one image.
-struct InterleavedStereo {
-  bool columns = false;
-  bool right_first = false;
-
-  friend bool operator==(const InterleavedStereo&, const InterleavedStereo&) = default;
-};
-
 /// How a viewer's single picture is made from both images of a pair.
-using StereoDisplay = std::variant<StereoPacking, Anaglyph, InterleavedStereo>;
+using StereoDisplay = std::variant<StereoPacking, Anaglyph>;
 
-/// Names as in ffmpeg's stereo3d filter: those of stereo_packing_names(); arcd, agmd and aybd
-/// (Dubois anaglyphs); irl, irr, icl and icr (interleaved).
+/// Names as in ffmpeg's stereo3d filter: those of stereo_packing_names() of one picture; arcd, agmd
+/// and aybd (Dubois anaglyphs).
 const std::vector<std::pair<std::string_view, StereoDisplay>>& stereo_display_names();
 
 /// Combines both images (equal size, depth and channels) into one. Anaglyphs weigh the channels of

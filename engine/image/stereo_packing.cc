@@ -19,14 +19,42 @@ void copy_pixels(ImageView<const T> source, ImageView<T> target) {
   }
 }
 
-/// The first (left or upper) or second half of a packed picture.
+bool divides_height(StereoPacking packing) {
+  return packing.layout == StereoLayout::kAboveBelow || packing.layout == StereoLayout::kRows;
+}
+
+/// The first or second image of a packed picture whose columns do not take turns.
 template <typename View>
-View half_of(const View& packed, bool above_below, bool second) {
-  const int width = above_below ? packed.width() : packed.width() / 2;
-  const int height = above_below ? packed.height() / 2 : packed.height();
-  const int x = second && !above_below ? width : 0;
-  const int y = second && above_below ? height : 0;
-  return {packed.row(y) + x * packed.channels(), width, height, packed.channels(), packed.stride()};
+View part_of(const View& packed, StereoLayout layout, bool second) {
+  const int channels = packed.channels();
+  if (layout == StereoLayout::kSideBySide) {
+    const int width = packed.width() / 2;
+    return {packed.row(0) + (second ? width * channels : 0), width, packed.height(), channels,
+            packed.stride()};
+  }
+  const int height = packed.height() / 2;
+  if (layout == StereoLayout::kAboveBelow) {
+    return {packed.row(second ? height : 0), packed.width(), height, channels, packed.stride()};
+  }
+  return {packed.row(second ? 1 : 0), packed.width(), height, channels, 2 * packed.stride()};
+}
+
+/// Columns `first`, first + step …
+struct Columns {
+  int first = 0;
+  int step = 1;
+};
+
+template <typename T>
+void copy_columns(ImageView<const T> source, Columns from, ImageView<T> target, Columns to,
+                  int count) {
+  const int channels = source.channels();
+  for (int y = 0; y < source.height(); ++y) {
+    for (int x = 0; x < count; ++x) {
+      std::copy_n(source.row(y) + (from.first + x * from.step) * channels, channels,
+                  target.row(y) + (to.first + x * to.step) * channels);
+    }
+  }
 }
 
 /// Clamping range of interpolated values: cubic interpolation overshoots.
@@ -110,11 +138,12 @@ void stretch_columns(ImageView<const T> half, ImageView<T> full) {
 template <typename T>
 void unpack_half(ImageView<const T> half, StereoPacking packing, Image<T>& image) {
   const int factor = packing.half_size ? 2 : 1;
-  image.resize(half.width() * (packing.above_below ? 1 : factor),
-               half.height() * (packing.above_below ? factor : 1), half.channels());
+  const bool is_high = divides_height(packing);
+  image.resize(half.width() * (is_high ? 1 : factor), half.height() * (is_high ? factor : 1),
+               half.channels());
   if (!packing.half_size) {
     copy_pixels(half, image.view());
-  } else if (packing.above_below) {
+  } else if (is_high) {
     stretch_rows(half, image.view());
   } else {
     stretch_columns(half, image.view());
@@ -123,17 +152,22 @@ void unpack_half(ImageView<const T> half, StereoPacking packing, Image<T>& image
 
 /// Extracts the first or second image of `packed`, in full size.
 void unpack_image(const Photograph& packed, StereoPacking packing, bool second, Photograph& image) {
-  const int divided = packing.above_below ? packed.height() : packed.width();
+  const bool is_high = divides_height(packing);
+  const int divided = is_high ? packed.height() : packed.width();
   if (divided < 2 || divided % 2 != 0) {
     throw Error(fmt::format("packed image is {}x{}, expected an even {} that both images share",
-                            packed.width(), packed.height(),
-                            packing.above_below ? "height" : "width"));
+                            packed.width(), packed.height(), is_high ? "height" : "width"));
   }
   image.origin = packed.origin;
   std::visit(
       [&]<typename T>(const Image<T>& pixels) {
-        unpack_half(half_of(pixels.view(), packing.above_below, second), packing,
-                    pixels_of<T>(image));
+        Image<T>& result = pixels_of<T>(image);
+        if (packing.layout == StereoLayout::kColumns) {
+          result.resize(pixels.width() / 2, pixels.height(), pixels.channels());
+          copy_columns<T>(pixels.view(), {second ? 1 : 0, 2}, result.view(), {}, result.width());
+        } else {
+          unpack_half(part_of(pixels.view(), packing.layout, second), packing, result);
+        }
       },
       packed.pixels);
 }
@@ -147,22 +181,23 @@ T mean_of(T a, T b) {
   }
 }
 
+/// `part`: of the packed picture.
 template <typename T>
-void pack_half(const Image<T>& image, StereoPacking packing, ImageView<T> half) {
+void pack_part(const Image<T>& image, StereoPacking packing, ImageView<T> part) {
   const int channels = image.channels();
   if (!packing.half_size) {
-    copy_pixels(image.view(), half);
-  } else if (packing.above_below) {
-    for (int y = 0; y < half.height(); ++y) {
+    copy_pixels(image.view(), part);
+  } else if (divides_height(packing)) {
+    for (int y = 0; y < part.height(); ++y) {
       const T* upper = image.row(2 * y);
       const T* lower = image.row(std::min(2 * y + 1, image.height() - 1));
-      std::transform(upper, upper + half.width() * channels, lower, half.row(y), mean_of<T>);
+      std::transform(upper, upper + part.width() * channels, lower, part.row(y), mean_of<T>);
     }
   } else {
-    for (int y = 0; y < half.height(); ++y) {
+    for (int y = 0; y < part.height(); ++y) {
       const T* source = image.row(y);
-      T* target = half.row(y);
-      for (int x = 0; x < half.width(); ++x) {
+      T* target = part.row(y);
+      for (int x = 0; x < part.width(); ++x) {
         const int left = 2 * x * channels;
         const int right = std::min(2 * x + 1, image.width() - 1) * channels;
         for (int c = 0; c < channels; ++c) {
@@ -176,20 +211,36 @@ void pack_half(const Image<T>& image, StereoPacking packing, ImageView<T> half) 
 }  // namespace
 
 const std::vector<std::pair<std::string_view, StereoPacking>>& stereo_packing_names() {
+  using enum StereoLayout;
   static const std::vector<std::pair<std::string_view, StereoPacking>> kNames = {
       {"sbsl", {}},
       {"sbsr", {.right_first = true}},
       {"sbs2l", {.half_size = true}},
       {"sbs2r", {.half_size = true, .right_first = true}},
-      {"abl", {.above_below = true}},
-      {"abr", {.above_below = true, .right_first = true}},
-      {"ab2l", {.above_below = true, .half_size = true}},
-      {"ab2r", {.above_below = true, .half_size = true, .right_first = true}},
-      {"tbl", {.above_below = true}},
-      {"tbr", {.above_below = true, .right_first = true}},
-      {"tb2l", {.above_below = true, .half_size = true}},
-      {"tb2r", {.above_below = true, .half_size = true, .right_first = true}}};
+      {"abl", {.layout = kAboveBelow}},
+      {"abr", {.layout = kAboveBelow, .right_first = true}},
+      {"ab2l", {.layout = kAboveBelow, .half_size = true}},
+      {"ab2r", {.layout = kAboveBelow, .half_size = true, .right_first = true}},
+      {"tbl", {.layout = kAboveBelow}},
+      {"tbr", {.layout = kAboveBelow, .right_first = true}},
+      {"tb2l", {.layout = kAboveBelow, .half_size = true}},
+      {"tb2r", {.layout = kAboveBelow, .half_size = true, .right_first = true}},
+      {"irl", {.layout = kRows}},
+      {"irr", {.layout = kRows, .right_first = true}},
+      {"icl", {.layout = kColumns}},
+      {"icr", {.layout = kColumns, .right_first = true}},
+      {"al", {.layout = kFrames}},
+      {"ar", {.layout = kFrames, .right_first = true}}};
   return kNames;
+}
+
+std::string_view to_name(StereoPacking packing) {
+  for (const auto& [name, named] : stereo_packing_names()) {
+    if (named == packing) {
+      return name;
+    }
+  }
+  return {};
 }
 
 void require_equal_shapes(const Photograph& left, const Photograph& right) {
@@ -221,19 +272,22 @@ void pack_stereo(const Photograph& left, const Photograph& right, StereoPacking 
   require_equal_shapes(left, right);
   std::visit(
       [&]<typename T>(const Image<T>& left_image) {
-        const int divisor = packing.half_size ? 2 : 1;
-        const int width = left_image.width();
-        const int height = left_image.height();
+        const auto& right_image = std::get<Image<T>>(right.pixels);
+        const auto packed_side = [&](int side, bool is_divided) {
+          return !is_divided ? side : 2 * (packing.half_size ? (side + 1) / 2 : side);
+        };
+        const bool is_high = divides_height(packing);
         Image<T>& image = pixels_of<T>(packed);
-        if (packing.above_below) {
-          image.resize(width, 2 * ((height + divisor - 1) / divisor), left_image.channels());
-        } else {
-          image.resize(2 * ((width + divisor - 1) / divisor), height, left_image.channels());
+        image.resize(packed_side(left_image.width(), !is_high),
+                     packed_side(left_image.height(), is_high), left_image.channels());
+        for (const bool second : {false, true}) {
+          const Image<T>& source = second == packing.right_first ? left_image : right_image;
+          if (packing.layout == StereoLayout::kColumns) {
+            copy_columns<T>(source.view(), {}, image.view(), {second ? 1 : 0, 2}, source.width());
+          } else {
+            pack_part(source, packing, part_of(image.view(), packing.layout, second));
+          }
         }
-        const bool above_below = packing.above_below;
-        pack_half(left_image, packing, half_of(image.view(), above_below, packing.right_first));
-        pack_half(std::get<Image<T>>(right.pixels), packing,
-                  half_of(image.view(), above_below, !packing.right_first));
       },
       left.pixels);
 }

@@ -57,7 +57,8 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),
       "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
-      "above/below, left on top; sbs2l, ab2l half size",
+      "above/below, left on top; sbs2l, ab2l half size; irl, icl rows or columns that take turns; "
+      "al pictures that take turns",
       "none");
   add_raw_video_setting(settings, input.raw_video);
   path("pairs", input.pairs, "FILE.csv",

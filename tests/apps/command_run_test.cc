@@ -256,7 +256,8 @@ TEST_F(InputRunCommand, EveryKindOfInputGivesTheSame) {
     const Photograph left = read_photograph(left_ + name(frame));
     const Photograph right = read_photograph(right_ + name(frame));
     Photograph packed;
-    pack_stereo(left, right, {.above_below = true, .half_size = false, .right_first = true},
+    pack_stereo(left, right,
+                {.layout = StereoLayout::kAboveBelow, .half_size = false, .right_first = true},
                 packed);
     write_photograph(folder_ / "packed" + name(frame), packed);
     write_photograph(folder_ / "walk" + name(2 * frame), left);

@@ -337,11 +337,11 @@ TEST(PairSource, PackedImages) {
   for (const int i : {0, 1, 2}) {
     Photograph packed;
     pack_stereo(plain_photograph(3, 5, i), plain_photograph(3, 5, 100 + i),
-                {.above_below = true, .right_first = true}, packed);
+                {.layout = StereoLayout::kAboveBelow, .right_first = true}, packed);
     write_photograph(folder / ("p/" + std::to_string(i) + ".png"), packed);
   }
-  PairSourceOptions options =
-      packed_in(folder / "p", StereoPacking{.above_below = true, .right_first = true});
+  PairSourceOptions options = packed_in(
+      folder / "p", StereoPacking{.layout = StereoLayout::kAboveBelow, .right_first = true});
   const auto source = open_pair_source(options);
   EXPECT_EQ(source->pair_count(), 3);
   EXPECT_EQ(source->describe(2), folder / "p/2.png");

@@ -130,7 +130,7 @@ TEST(PackedPairs, ABadFrameIsOneBadPair) {
 TEST(MovingCameraPairs, ABadFrameSpoilsTheTwoPairsThatItIsIn) {
   auto video = std::make_unique<MadeUpVideo>("v", 7);
   video->bad = {2, 6};
-  const auto pairs = make_moving_camera_pairs(std::move(video), 2);
+  const auto pairs = make_moving_camera_pairs(std::move(video), {.step = 2});
   EXPECT_THAT(outcomes_of(*pairs),
               ElementsAre("0: v 2 is bad", "1 3", "2: v 2 is bad", "3 5", "4: v 6 is bad"));
   pairs->skip_to(1);
@@ -140,7 +140,7 @@ TEST(MovingCameraPairs, ABadFrameSpoilsTheTwoPairsThatItIsIn) {
 TEST(MovingCameraPairs, EndsWhereTheVideoEnds) {
   auto video = std::make_unique<MadeUpVideo>("v", 7);
   video->true_count = 5;
-  const auto pairs = make_moving_camera_pairs(std::move(video), -3);
+  const auto pairs = make_moving_camera_pairs(std::move(video), {.step = -3});
   EXPECT_EQ(pairs->pair_count(), 4);
   EXPECT_THAT(outcomes_of(*pairs), ElementsAre("3 0", "4 1"));
 }
@@ -148,7 +148,7 @@ TEST(MovingCameraPairs, EndsWhereTheVideoEnds) {
 TEST(MovingCameraPairs, FramesMissingBetweenTheTwoAreRemarked) {
   auto video = std::make_unique<MadeUpVideo>("v", 8);
   video->missing = {{3, 1}, {4, 2}};
-  const auto pairs = make_moving_camera_pairs(std::move(video), 2);
+  const auto pairs = make_moving_camera_pairs(std::move(video), {.step = 2});
   const std::map<int, std::vector<std::string>> remarks = remarks_of(*pairs);
   EXPECT_THAT(remarks, testing::SizeIs(3));
   EXPECT_THAT(remarks.at(1), ElementsAre("1 frame is missing between v 1 and v 3"));
@@ -159,7 +159,7 @@ TEST(MovingCameraPairs, FramesMissingBetweenTheTwoAreRemarked) {
 TEST(MovingCameraPairs, EveryFrameIsDecodedOnce) {
   auto video = std::make_unique<MadeUpVideo>("v", 30);
   const MadeUpVideo& counted = *video;
-  const auto pairs = make_moving_camera_pairs(std::move(video), 4);
+  const auto pairs = make_moving_camera_pairs(std::move(video), {.step = 4});
   FramePair pair;
   ASSERT_TRUE(pairs->fetch(pair));
   EXPECT_EQ(counted.fetched, 5);
@@ -168,6 +168,45 @@ TEST(MovingCameraPairs, EveryFrameIsDecodedOnce) {
   EXPECT_EQ(counted.fetched, 8);
   EXPECT_EQ(outcomes_of(*pairs).size(), 22U);
   EXPECT_EQ(counted.fetched, 30);
+}
+
+TEST(TurnsOfPictures, TwoSuccessiveOnesAreAPair) {
+  for (const bool right_first : {false, true}) {
+    auto video = std::make_unique<MadeUpVideo>("v", 9);
+    const MadeUpVideo& counted = *video;
+    const auto pairs =
+        make_moving_camera_pairs(std::move(video), {.step = right_first ? -1 : 1, .distance = 2});
+    const std::vector<std::string> all = right_first
+                                             ? std::vector<std::string>{"1 0", "3 2", "5 4", "7 6"}
+                                             : std::vector<std::string>{"0 1", "2 3", "4 5", "6 7"};
+    EXPECT_EQ(pairs->pair_count(), 4);
+    EXPECT_EQ(outcomes_of(*pairs), all);
+    EXPECT_EQ(counted.fetched, 8);
+    EXPECT_THAT(pairs->remarks(), ElementsAre(HasSubstr("v 8 has no partner")));
+    EXPECT_EQ(pairs->unpaired_frames(), 0);
+    for (int first = 3; first >= 0; --first) {
+      pairs->skip_to(first);
+      EXPECT_EQ(outcomes_of(*pairs), std::vector(all.begin() + first, all.end()));
+    }
+    EXPECT_EQ(pairs->sound().first_frame, 0);
+    EXPECT_EQ(pairs->index_of(3), 3);
+  }
+}
+
+TEST(TurnsOfPictures, AMissingPictureIsRemarked) {
+  auto video = std::make_unique<MadeUpVideo>("v", 10);
+  video->bad = {5};
+  video->missing = {{3, 1}, {6, 2}, {8, 3}};
+  const auto pairs =
+      make_moving_camera_pairs(std::move(video), SuccessiveFrames{.step = 1, .distance = 2});
+  EXPECT_THAT(outcomes_of(*pairs), ElementsAre("0 1", "2 3", "2: v 5 is bad", "6 7", "8 9"));
+  pairs->skip_to(0);
+  const std::map<int, std::vector<std::string>> remarks = remarks_of(*pairs);
+  EXPECT_THAT(remarks, testing::SizeIs(2));
+  EXPECT_THAT(remarks.at(1),
+              ElementsAre("1 frame is missing between v 2 and v 3",
+                          HasSubstr("1 picture is missing before v 3: from here on left and")));
+  EXPECT_THAT(remarks.at(4), ElementsAre(HasSubstr("3 pictures are missing before v 9")));
 }
 
 }  // namespace vantage::pairing_test

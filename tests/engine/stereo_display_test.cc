@@ -49,6 +49,9 @@ TYPED_TEST(StereoDisplayTest, PackingsAreThoseOfPackStereo) {
   const Photograph left = noise<TypeParam>(6, 4, 3, 1);
   const Photograph right = noise<TypeParam>(6, 4, 3, 2);
   for (const auto& [name, packing] : stereo_packing_names()) {
+    if (packing.layout == StereoLayout::kFrames) {
+      continue;
+    }
     Photograph shown;
     Photograph packed;
     show_stereo(left, right, display_of(name), shown);

@@ -18,6 +18,20 @@ StereoPacking packing_of(std::string_view name) {
   return found->second;
 }
 
+bool divides_height(StereoPacking packing) {
+  return packing.layout == StereoLayout::kAboveBelow || packing.layout == StereoLayout::kRows;
+}
+
+/// Those of one picture: the test of displays has the places of interleaved ones.
+std::vector<std::pair<std::string_view, StereoPacking>> names_of_halves() {
+  auto names = stereo_packing_names();
+  std::erase_if(names, [](const auto& name) {
+    return name.second.layout != StereoLayout::kSideBySide &&
+           name.second.layout != StereoLayout::kAboveBelow;
+  });
+  return names;
+}
+
 /// Value of any photograph as double.
 double value(const Photograph& photograph, int x, int y, int channel = 0) {
   return std::visit([&](const auto& image) { return static_cast<double>(image.at(x, y, channel)); },
@@ -31,6 +45,9 @@ TYPED_TEST_SUITE(StereoPackingTest, Depths);
 
 TYPED_TEST(StereoPackingTest, FullSizesComeBack) {
   for (const auto& [name, packing] : stereo_packing_names()) {
+    if (packing.layout == StereoLayout::kFrames) {
+      continue;
+    }
     for (const Size size : kSizes) {
       for (const int channels : {1, 3, 4}) {
         const Photograph left = noise<TypeParam>(size.width, size.height, channels, 1);
@@ -49,9 +66,9 @@ TYPED_TEST(StereoPackingTest, FullSizesComeBack) {
         } else {
           // One column or row more where the size is odd.
           EXPECT_EQ(left_again.width(),
-                    packing.above_below ? size.width : (size.width + 1) / 2 * 2);
+                    divides_height(packing) ? size.width : (size.width + 1) / 2 * 2);
           EXPECT_EQ(left_again.height(),
-                    packing.above_below ? (size.height + 1) / 2 * 2 : size.height);
+                    divides_height(packing) ? (size.height + 1) / 2 * 2 : size.height);
           EXPECT_EQ(right_again.width(), left_again.width());
           EXPECT_EQ(right_again.channels(), channels);
         }
@@ -66,7 +83,7 @@ TYPED_TEST(StereoPackingTest, EveryNameMeansItsPlaces) {
   for (const Size size : kSizes) {
     const Photograph left = noise<TypeParam>(size.width, size.height, 3, 3);
     const Photograph right = noise<TypeParam>(size.width, size.height, 3, 4);
-    for (const auto& [name, packing] : stereo_packing_names()) {
+    for (const auto& [name, packing] : names_of_halves()) {
       const bool half = name.find('2') != std::string_view::npos;
       const bool is_column_pair = name.starts_with("sbs");
       const Photograph& first = name.ends_with('l') ? left : right;
@@ -127,12 +144,12 @@ std::pair<double, double> limits_of(const Photograph& packed, StereoPacking pack
     return {0, std::numeric_limits<T>::max()};
   }
   std::pair<double, double> limits{1, 0};
-  const int width = packing.above_below ? packed.width() : packed.width() / 2;
-  const int height = packing.above_below ? packed.height() / 2 : packed.height();
+  const int width = divides_height(packing) ? packed.width() : packed.width() / 2;
+  const int height = divides_height(packing) ? packed.height() / 2 : packed.height();
   for (const auto [x, y] : positions_of(width, height)) {
     for (int c = 0; c < packed.channels(); ++c) {
       const double here =
-          packing.above_below ? value(packed, x, first + y, c) : value(packed, first + x, y, c);
+          divides_height(packing) ? value(packed, x, first + y, c) : value(packed, first + x, y, c);
       limits = {std::min(limits.first, here), std::max(limits.second, here)};
     }
   }
@@ -143,7 +160,7 @@ TYPED_TEST(StereoPackingTest, HalfSizesAreStretchedByCubicInterpolation) {
   constexpr double kRounding = std::is_same_v<TypeParam, float> ? 1e-6 : 0.5;
   for (const char* name : {"sbs2l", "sbs2r", "ab2l", "tb2r"}) {
     const StereoPacking packing = packing_of(name);
-    const bool columns = !packing.above_below;
+    const bool columns = !divides_height(packing);
     for (const Size size : {Size{2, 2}, Size{4, 6}, Size{6, 4}, Size{62, 6}, Size{34, 38}}) {
       const Photograph packed = noise<TypeParam>(size.width, size.height, 3, 5);
       Photograph left;
@@ -189,10 +206,13 @@ TEST(StereoPacking, AHalfSizeRampComesBack) {
 }
 
 TEST(StereoPacking, NamesAndSynonyms) {
-  EXPECT_EQ(stereo_packing_names().size(), 12U);
+  EXPECT_EQ(stereo_packing_names().size(), 18U);
   for (const char* ending : {"l", "r", "2l", "2r"}) {
     EXPECT_EQ(packing_of(std::string("tb") + ending), packing_of(std::string("ab") + ending));
     EXPECT_NE(packing_of(std::string("sbs") + ending), packing_of(std::string("ab") + ending));
+  }
+  for (const char* name : {"sbsl", "ab2r", "irr", "icl", "ar"}) {
+    EXPECT_EQ(to_name(packing_of(name)), name);
   }
 }
 
@@ -216,6 +236,8 @@ TEST(StereoPacking, RefusesWhatDoesNotFit) {
   EXPECT_THAT(unpack_error(5, 4, "sbsl"), HasSubstr("packed image is 5x4, expected an even width"));
   EXPECT_THAT(unpack_error(4, 5, "ab2r"),
               HasSubstr("packed image is 4x5, expected an even height"));
+  EXPECT_THAT(unpack_error(5, 4, "icr"), HasSubstr("expected an even width"));
+  EXPECT_THAT(unpack_error(4, 5, "irl"), HasSubstr("expected an even height"));
   EXPECT_EQ(unpack_error(4, 5, "sbs2r"), "");
   EXPECT_EQ(unpack_error(5, 4, "abl"), "");
   EXPECT_NE(error_of([&] { unpack_stereo(Photograph(), {}, left, right); }), "");

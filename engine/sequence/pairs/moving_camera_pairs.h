@@ -8,21 +8,29 @@
 
 namespace vantage {
 
-/// Pairs of frames of one moving camera. The earlier frame of pair i is frame i, the later one
-/// frame i + |step|.
+/// Which frames of one sequence are pairs.
+struct SuccessiveFrames {
+  int step = 1;      ///< from the left frame to the right one; below 0: the right one is earlier
+  int distance = 1;  ///< from a pair to the next: 1, or 2 where frames take turns (StereoLayout)
+};
+
+/// Pairs of frames of one moving camera, or of a film whose left and right pictures take turns. The
+/// earlier frame of pair i is frame i · distance, the later one |step| frames after it.
 class MovingCameraPairs : public PairSource {
  public:
   /// Throws Error when there are no more than |step| frames.
-  MovingCameraPairs(std::unique_ptr<FrameSource> source, int step);
+  MovingCameraPairs(std::unique_ptr<FrameSource> source, SuccessiveFrames pairs);
 
-  [[nodiscard]] int pair_count() const final { return source_->frame_count() - distance_; }
+  [[nodiscard]] int pair_count() const final {
+    return (source_->frame_count() - distance_ - 1) / between_pairs_ + 1;
+  }
   [[nodiscard]] std::string describe(int index) const final;
   [[nodiscard]] std::vector<std::string> remarks() const final;
   [[nodiscard]] int unpaired_frames() const final { return 0; }
-  [[nodiscard]] std::optional<FrameRate> frame_rate() const final { return source_->frame_rate(); }
+  [[nodiscard]] std::optional<FrameRate> frame_rate() const final;
   [[nodiscard]] std::optional<FrameTimes> frame_times() const final;
   [[nodiscard]] Sound sound() const final {
-    return {source_->video_file(), later_is_left_ ? distance_ : 0.0};
+    return {source_->video_file(), static_cast<double>(first_left()) / between_pairs_};
   }
   [[nodiscard]] std::vector<std::filesystem::path> files() const final { return source_->files(); }
   [[nodiscard]] std::vector<std::string> identities() const final { return {source_->identity()}; }
@@ -31,6 +39,10 @@ class MovingCameraPairs : public PairSource {
   [[nodiscard]] FrameSource& source() { return *source_; }
   [[nodiscard]] const FrameSource& source() const { return *source_; }
   [[nodiscard]] int distance() const { return distance_; }
+  /// Frames of pair `index`.
+  [[nodiscard]] int earlier_frame(int index) const { return index * between_pairs_; }
+  [[nodiscard]] int later_frame(int index) const { return earlier_frame(index) + distance_; }
+  [[nodiscard]] bool takes_turns() const { return between_pairs_ > 1; }
   [[nodiscard]] FetchedFrame& earlier(FramePair& pair) const {
     return pair.fetched[later_is_left_ ? 1 : 0];
   }
@@ -39,8 +51,12 @@ class MovingCameraPairs : public PairSource {
   }
 
  private:
+  /// Left frame of pair 0. Pictures that take turns are shown as one.
+  [[nodiscard]] int first_left() const { return later_is_left_ && !takes_turns() ? distance_ : 0; }
+
   std::unique_ptr<FrameSource> source_;
   int distance_;  // |step|
+  int between_pairs_;
   bool later_is_left_;
 };
 
@@ -60,7 +76,7 @@ class MovingCameraImages : public MovingCameraPairs {
 /// pair. Each of its two pairs makes its own photograph of it.
 class MovingCameraVideo : public MovingCameraPairs {
  public:
-  MovingCameraVideo(std::unique_ptr<FrameSource> source, int step);
+  MovingCameraVideo(std::unique_ptr<FrameSource> source, SuccessiveFrames pairs);
 
   bool fetch(FramePair& pair) override;
   void skip_to(int index) override;
@@ -79,11 +95,12 @@ class MovingCameraVideo : public MovingCameraPairs {
   bool keep_next();
 
   std::vector<KeptFrame> kept_;  // |step| + 1 of them
-  int next_index_ = 0;           // of pairs, and the first kept frame
+  int next_index_ = 0;           // of pairs
   int kept_end_ = 0;             // frame after the last kept one
 };
 
 /// Throws Error when there are no more than |step| frames.
-std::unique_ptr<PairSource> make_moving_camera_pairs(std::unique_ptr<FrameSource> source, int step);
+std::unique_ptr<PairSource> make_moving_camera_pairs(std::unique_ptr<FrameSource> source,
+                                                     SuccessiveFrames pairs);
 
 }  // namespace vantage

@@ -89,15 +89,19 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
         *options.packing);
   }
   if (!options.stereo.empty()) {
-    return std::make_unique<PackedPairs>(open_frame_source(options.stereo, options.reading),
-                                         *options.packing);
+    std::unique_ptr<FrameSource> source = open_frame_source(options.stereo, options.reading);
+    if (options.packing->layout == StereoLayout::kFrames) {
+      const SuccessiveFrames turns{.step = options.packing->right_first ? -1 : 1, .distance = 2};
+      return make_moving_camera_pairs(std::move(source), turns);
+    }
+    return std::make_unique<PackedPairs>(std::move(source), *options.packing);
   }
   if (!options.pairs.empty()) {
     return open_pair_list(options.pairs, options.reading);
   }
   if (!options.sequence.empty()) {
     return make_moving_camera_pairs(open_frame_source(options.sequence, options.reading),
-                                    options.step);
+                                    {.step = options.step});
   }
   auto pairs = std::make_unique<TwoCameraPairs>(open_frame_source(options.left, options.reading),
                                                 open_frame_source(options.right, options.reading),
@@ -139,6 +143,11 @@ void PairSourceOptions::validate() const {
   }
   if (!stereo.empty() && !packing) {
     throw UsageError("stereo needs packing, such as sbsl");
+  }
+  if (stereo == "-" && packing->layout == StereoLayout::kFrames) {
+    throw UsageError(fmt::format(
+        "packing is {} with stereo -, expected pictures of a stream that hold both images",
+        to_name(*packing)));
   }
   if (packing && stereo.empty()) {
     throw UsageError("packing is given without stereo");
