@@ -83,6 +83,22 @@ std::string finish_if_whole(const RunJob& job, const RunSession& session,
   return sound_problem;
 }
 
+/// A live stream is read by a thread of its own, which may wait for a sender who waits for us.
+class EndOfReading {
+ public:
+  explicit EndOfReading(bool is_live) : is_live_(is_live) {}
+  EndOfReading(const EndOfReading&) = delete;
+  EndOfReading& operator=(const EndOfReading&) = delete;
+  ~EndOfReading() {
+    if (is_live_) {
+      request_end();
+    }
+  }
+
+ private:
+  bool is_live_;
+};
+
 }  // namespace
 
 int command_run(const Arguments& arguments) {
@@ -98,6 +114,7 @@ int command_run(const Arguments& arguments) {
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
   RunSession session = open_run(job, settings, report);
+  const EndOfReading end(job.input.live);
   const std::string plan = describe_plan(job, session);
   if (job.dry_run) {
     fmt::print("{}", plan);

@@ -13,4 +13,7 @@ void remove_files_on_signals();
 /// work in flight first. SIGHUP stays ignored if it was (nohup).
 const std::atomic<bool>& interrupt_flag();
 
+/// Sets that flag, as the first signal does.
+void request_end();
+
 }  // namespace vantage::apps

@@ -179,6 +179,9 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
   if (!sequence.map_shares.empty()) {
     results["map"] = maps_of(sequence);
   }
+  if (sequence.live) {
+    results["live"] = live_values(*sequence.live);
+  }
   if (sequence.cut) {
     results["cut_range"] = cut_range_values(*sequence.cut);
     results["cut_range"]["frame"] = sequence.cut_frame;
@@ -189,6 +192,22 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
 void print_sound_problem(const std::string& command, const std::string& problem) {
   if (!problem.empty()) {
     tell("{}: note: the videos have no sound: {}\n", command, with_dashes(problem));
+  }
+}
+
+SettingValue live_values(const LiveReport& live) {
+  return {{"frames", live.frames},
+          {"dropped", live.dropped},
+          {"latency_ms",
+           {{"p50", live.median_ms}, {"p95", live.percentile_95_ms}, {"max", live.max_ms}}}};
+}
+
+void print_live(const SequenceReport& sequence) {
+  if (sequence.live) {
+    const LiveReport& live = *sequence.live;
+    tell("run: live: {} frame{} delivered, {} dropped; latency {:.1f} ms (p50), {:.1f} ms (p95)\n",
+         live.frames, live.frames == 1 ? "" : "s", live.dropped, live.median_ms,
+         live.percentile_95_ms);
   }
 }
 
@@ -222,6 +241,7 @@ void print_summary(const RunJob& job, const RunSession& session, const SequenceR
   if (!sequence.map_shares.empty()) {
     tell("run: {}\n", to_text(mean_shares(sequence)));
   }
+  print_live(sequence);
   if (sequence.reuse.frames > 0) {
     tell("run: {:.0f} % of the tiles kept the disparities of the frame before\n",
          100 * sequence.reuse.mean_share_reused());

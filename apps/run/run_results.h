@@ -22,6 +22,10 @@ std::vector<Remark> remarks_of(const RunJob& job, const SequenceReport& sequence
 /// Prints a line to stderr if videos lack the sound they should have.
 void print_sound_problem(const std::string& command, const std::string& problem);
 
+/// What a live run dropped, and its latencies, for --report; as a line on stderr, if it was one.
+SettingValue live_values(const LiveReport& live);
+void print_live(const SequenceReport& sequence);
+
 /// Prints the results to stderr in a few lines. `wall_seconds`: since the start of the command.
 void print_summary(const RunJob& job, const RunSession& session, const SequenceReport& sequence,
                    double wall_seconds);

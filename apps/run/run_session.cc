@@ -264,7 +264,6 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   use_ranges(session.columns, match);
   report.set_settings(reported_settings(settings, match));
   choose_disparities(settings, job.common, find_range, match, report);
-  session.pairs->forget_start();
   job.sequence.validate();
   job.sequence.frame_rate =
       job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
@@ -280,6 +279,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   planned.match.disparities = session.columns.widest_with(planned.match.disparities);
   session.memory =
       plan_memory(planned, {in_flight, job.memory_bytes}, session.shape, first, session.execution);
+  session.pairs->forget_start();
   return session;
 }
 

@@ -103,6 +103,7 @@ void add_part_settings(Settings& settings, RunJob& job) {
 void add_pipeline_settings(Settings& settings, RunJob& job) {
   settings.start_group("Pipeline", false);
   add_in_flight_setting(settings, job);
+  add_live_setting(settings, job);
   add_size_setting(settings, "memory", job.memory_bytes,
                    "Memory budget of the plan, such as 800M or 4G; auto: no limit");
   settings.flag("dry-run", job.dry_run, "Print the plan and stop");

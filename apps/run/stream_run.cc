@@ -73,12 +73,16 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
   if (sequence.frames > 0) {
     report.set_plan(sequence.plan);
   }
-  report.set_results({{"frames", sequence.frames},
-                      {"skipped", sequence.skipped.size()},
-                      {"interrupted", sequence.interrupted},
-                      {"width_px", sequence.width_px},
-                      {"height_px", sequence.height_px},
-                      {"frames_per_second_of_video", to_string(job.sequence.frame_rate)}});
+  SettingValue results = {{"frames", sequence.frames},
+                          {"skipped", sequence.skipped.size()},
+                          {"interrupted", sequence.interrupted},
+                          {"width_px", sequence.width_px},
+                          {"height_px", sequence.height_px},
+                          {"frames_per_second_of_video", to_string(job.sequence.frame_rate)}};
+  if (sequence.live) {
+    results["live"] = live_values(*sequence.live);
+  }
+  report.set_results(std::move(results));
   tell_remarks(remarks_of(job, sequence), job.common, report);
   report.write(job.common.report);
   if (!job.common.quiet) {
@@ -88,6 +92,7 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
     tell("run: {} frame{} of {}x{} pixels -> standard output{}\n", sequence.frames,
          sequence.frames == 1 ? "" : "s", sequence.width_px, sequence.height_px,
          sequence.interrupted ? " (interrupted)" : "");
+    print_live(sequence);
     if (!sequence.map_shares.empty()) {
       tell("run: {}\n", to_text(mean_shares(sequence)));
     }

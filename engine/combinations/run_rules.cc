@@ -90,6 +90,8 @@ constexpr Rule kRunRules[] = {
      "--kept-outline has no effect without --calibration"},
     {kJob, "kitti-cameras", "unless calibration | unrectified | column calibration",
      "--kitti-cameras has no effect without --calibration"},
+    {kJob, "user in-flight | every | frames", "live",
+     "--{option} cannot be used with --live: one frame is in flight, and the time decides which"},
     // A list of pairs whose columns say something of each pair.
     {kPairList, "kept-outline > 0", "unless calibration | column calibration",
      "--kept-outline has no effect without --calibration"},
@@ -153,6 +155,11 @@ constexpr Rule kRunRules[] = {
      "stereo = -",
      "--{option} is shot and --stereo is -, expected another value: it needs all frames of a shot "
      "before the first; store the stream in a file"},
+    {kRun, "resume | force | shard", "live",
+     "--{option} cannot be used with --live: what was dropped does not come again"},
+    {kRun, "video | save depth-video", "live",
+     "--{option} cannot be used with --live: a video of fewer frames would run too fast; pipe -o - "
+     "to ffmpeg with -use_wallclock_as_timestamps 1"},
     {kRun, "raw-video", "unless stereo = -", "no effect without --stereo -"},
     {kRun, "stream-format", "unless output = -", "no effect without --output -"},
     {kRun,

@@ -232,6 +232,12 @@ void add_in_flight_setting(Settings& settings, SequenceJob& job) {
       "Number of frames in flight, 1 to 64; auto: threads + 2, fewer if memory is short");
 }
 
+void add_live_setting(Settings& settings, SequenceJob& job) {
+  settings.flag("live", job.input.live,
+                "Of a stream: one frame in flight, always the newest pair; pairs that come while "
+                "one is in work are dropped and counted, the report has the latency");
+}
+
 void complete_sequence(SequenceJob& job, bool is_streamed) {
   SequenceOptions& sequence = job.sequence;
   sequence.views = paths_of(job.views);
@@ -279,6 +285,9 @@ void check_sequence(SequenceJob& job, const Settings& settings) {
   }
   check_views(job.views, job.sequence.views, job.sequence.look_at_px, !job.cameras_file().empty());
   apply_step_of_frames(job);
+  if (job.input.live) {
+    job.in_flight = 1;
+  }
   job.input.validate();
   job.rectification.validate();
   const bool may_be_listed = values.find("column calibration") != nullptr;

@@ -68,6 +68,7 @@ void add_poses_setting(Settings& settings, SequenceJob& job);
 void add_steadiness_settings(Settings& settings, SequenceJob& job);
 void add_chunk_frames_setting(Settings& settings, SequenceJob& job);
 void add_in_flight_setting(Settings& settings, SequenceJob& job);
+void add_live_setting(Settings& settings, SequenceJob& job);
 
 /// Fills in the fields of `job.sequence` that follow from other fields; poses must have been read.
 /// `is_streamed`: frames cannot be looked at before the run. Throws UsageError for invalid fields.

@@ -118,6 +118,7 @@ SequenceRun SequenceSession::run(const SequenceJob& job, PairSource& source, con
           .shots = shots,
           .in_flight = in_flight,
           .keep_going = job.keep_going,
+          .is_live = job.input.live,
           .on_progress = {},
           .stop = nullptr};
 }

@@ -34,7 +34,7 @@ scheduler::FrameOutcome FrameFlow::flow(const std::atomic<bool>* stop) {
   steps.prepare = take_through(StepPhase::kPrepare);
   steps.compute = take_through(StepPhase::kCompute);
   steps.encode = take_through(StepPhase::kEncode);
-  steps.write = [&](int slot) { write(slot_of(slot)); };
+  steps.write = [&](int slot) { hand_over(slot_of(slot)); };
   steps.compute_in_order = worker_.computes_in_order();
   const auto skip_slot = [&](int slot, const std::exception_ptr& error) {
     handle(*slot_of(slot), error);
@@ -72,6 +72,16 @@ bool FrameFlow::read(std::unique_ptr<FrameSlot>& slot) {
   return true;
 }
 
+void FrameFlow::hand_over(std::unique_ptr<FrameSlot>& slot) {
+  if (!slot->is_lead_in && !slot->is_absent) {
+    latency_.leaves(slot->pair.arrival);
+    if (run_.on_frame) {
+      run_.on_frame(*slot);
+    }
+  }
+  write(slot);
+}
+
 void FrameFlow::handle(FrameSlot& slot, const std::exception_ptr& error) {
   slot.files.discard();
   std::string problem;
@@ -91,6 +101,7 @@ void FrameFlow::handle(FrameSlot& slot, const std::exception_ptr& error) {
     give_up(slot, name, problem);
   }
   if (!slot.is_lead_in) {  // else it is skipped when it is delivered
+    latency_.leaves(std::nullopt);
     skip(slot, name, problem);
   }
 }
@@ -101,6 +112,7 @@ void FrameFlow::give_up(const FrameSlot& slot, const std::string& name,
 }
 
 void FrameFlow::tell_progress(int frames, double cells) {
+  tell_delivered(frames);
   progress_.frames_done += frames;
   progress_.frames_total = feed_.frames_total() < kUnknownFrames ? feed_.frames_total() : 0;
   progress_.cells += cells;
@@ -116,6 +128,10 @@ void FrameFlow::add_totals(SequenceReport& report) const {
     report.memory.add("frames in flight", slot ? held_bytes(*slot) : 0);
   }
   worker_.add_memory_use(report.memory);
+  if (run_.is_live) {
+    report.live = latency_.report();
+    report.live->dropped = run_.pairs.dropped_pairs();
+  }
 }
 
 }  // namespace vantage

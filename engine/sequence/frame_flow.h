@@ -50,7 +50,9 @@ class FrameFlow {
   [[nodiscard]] bool is_at_end() const { return feed_.is_at_end(); }
   /// Thread rule: one thread at a time.
   void tell_progress(int frames, double cells);
-  /// What is known at the end: frames in flight, time, memory.
+  /// So many frames have reached who takes them: for latencies. Thread rule: any thread.
+  void tell_delivered(int frames) { latency_.delivered(frames); }
+  /// What is known at the end: frames in flight, time, memory, latency.
   void add_totals(SequenceReport& report) const;
 
   [[nodiscard]] const SequenceRun& run() const { return run_; }
@@ -60,6 +62,7 @@ class FrameFlow {
 
  private:
   bool read(std::unique_ptr<FrameSlot>& slot);
+  void hand_over(std::unique_ptr<FrameSlot>& slot);
   void handle(FrameSlot& slot, const std::exception_ptr& error);
 
   const SequenceRun run_;
@@ -71,6 +74,7 @@ class FrameFlow {
   int next_pair_ = -1;  ///< as feed_; the source may be anywhere at first
   std::vector<std::unique_ptr<FrameSlot>> slots_;
   SequenceProgress progress_;
+  LatencyMeter latency_;
 };
 
 }  // namespace vantage

@@ -31,16 +31,23 @@ FrameSelection selection_of(const SequenceRun& run, const std::vector<int>& fram
   return selection;
 }
 
+std::vector<FrameRun> work_of(const SequenceRun& run, const std::vector<int>& frames,
+                              const FrameDependence& dependence) {
+  if (run.pairs.is_stream()) {
+    return {run_of(run.selection, dependence, run.selection.own())};
+  }
+  return plan_work(selection_of(run, frames), dependence,
+                   [&](int frame) { return !std::ranges::binary_search(frames, frame); });
+}
+
 }  // namespace
 
 class FrameIterator::Work final : private FrameFlow {
  public:
   Work(const SequenceOptions& options, const SequenceLayout& layout, const SequenceRun& run,
        const std::vector<int>& frames, Execution& execution)
-      : FrameFlow(options, layout, run,
-                  plan_work(selection_of(run, frames), dependence_of(options, layout),
-                            [&](int frame) { return !std::ranges::binary_search(frames, frame); }),
-                  false, execution),
+      : FrameFlow(options, layout, run, work_of(run, frames, dependence_of(options, layout)), false,
+                  execution),
         options_(options),
         thread_([this] { compute_all(); }) {}
 
@@ -81,6 +88,7 @@ class FrameIterator::Work final : private FrameFlow {
     ready_.pop_front();
     --ahead_;
     lock.unlock();
+    tell_delivered(1);
     changed_.notify_all();
     return frame;
   }
@@ -113,12 +121,17 @@ class FrameIterator::Work final : private FrameFlow {
   bool may_continue() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return is_stopped_ || ahead_ <= run().in_flight / 2; });
+    lock.unlock();
+    while (!is_stopped_ && !is_at_end() && !run().pairs.is_ready(kLookInterval)) {
+    }
     return !is_stopped_ && !is_at_end();
   }
 
   bool may_read() override {
     const std::scoped_lock lock(mutex_);
-    return !is_stopped_ && ahead_ < run().in_flight;
+    // Who sends pairs may need the threads of the execution, too.
+    return !is_stopped_ && ahead_ < run().in_flight &&
+           run().pairs.is_ready(std::chrono::milliseconds(0));
   }
 
   void begin(FrameSlot& slot) override {
@@ -164,6 +177,7 @@ class FrameIterator::Work final : private FrameFlow {
 
   void skip(FrameSlot& slot, const std::string& name, const std::string& problem) override {
     drop(slot);
+    tell_delivered(1);
     const std::scoped_lock lock(mutex_);
     skipped_.push_back({slot.frame, fmt::format("{}: {}", name, problem)});
   }

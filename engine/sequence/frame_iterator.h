@@ -30,7 +30,8 @@ struct ComputedFrame {
 /// in-flight count.
 class FrameIterator {
  public:
-  /// `frames`: numbers of pairs, increasing; frames that they depend on are computed, too. Options
+  /// `frames`: numbers of pairs, increasing; frames that they depend on are computed, too. Of a
+  /// stream all are taken, whatever it says, and waiting for pairs holds no thread either. Options
   /// must be valid. What options, run and execution refer to must outlive the iterator; `run.stop`
   /// and `run.on_progress` are not used.
   FrameIterator(const SequenceOptions& options, const SequenceRun& run,

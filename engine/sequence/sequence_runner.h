@@ -15,6 +15,7 @@
 #include "engine/remark.h"
 #include "engine/reprojection/map_camera.h"
 #include "engine/sequence/journal/run_journal.h"
+#include "engine/sequence/latency_meter.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/options/sequence_options.h"
 #include "engine/sequence/pairs/frame_poses.h"
@@ -24,6 +25,8 @@
 #include "engine/sequence/work_plan.h"
 
 namespace vantage {
+
+struct FrameSlot;
 
 /// Progress of a run.
 struct SequenceProgress {
@@ -96,7 +99,8 @@ struct SequenceReport {
   double share_busy = 0;      ///< of the time of all threads of the execution, processor time
   scheduler::ChainPlan plan;  ///< of the last frame
   ReuseReport reuse;
-  MemoryUse memory;  ///< "frames in flight" and that of matching them
+  std::optional<LiveReport> live;  ///< of a live run
+  MemoryUse memory;                ///< "frames in flight" and that of matching them
 };
 
 /// The mean of the frames of `map_shares`, of which there are some.
@@ -116,7 +120,10 @@ struct SequenceRun {
   const ShotTable* shots = nullptr;  ///< must be set if the options need shots; not of a stream
   int in_flight = 1;                 ///< frames processed at the same time, 1..64
   bool keep_going = false;           ///< frames that fail are skipped and recorded
+  bool is_live = false;              ///< the source drops pairs; in_flight is 1
   std::function<void(const SequenceProgress&)> on_progress;  ///< never concurrently
+  /// Each frame that has its results, before they are delivered; in order, never concurrently.
+  std::function<void(const FrameSlot&)> on_frame = {};
   const std::atomic<bool>* stop = nullptr;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <utility>
@@ -18,6 +19,8 @@ class ForwardedPairs : public PairSource {
   [[nodiscard]] bool is_stream() const override { return source_->is_stream(); }
   [[nodiscard]] FrameRange repeatable_pairs() const override { return source_->repeatable_pairs(); }
   void forget_start() override { source_->forget_start(); }
+  bool is_ready(std::chrono::milliseconds longest) override { return source_->is_ready(longest); }
+  [[nodiscard]] int dropped_pairs() const override { return source_->dropped_pairs(); }
   [[nodiscard]] FrameRange pairs_of(FrameRange input_frames) const override {
     return source_->pairs_of(input_frames);
   }

@@ -12,12 +12,14 @@
 #include "engine/io/video/image_sequence.h"
 #include "engine/io/video/raw_video.h"
 #include "engine/sequence/pairs/every_nth_pair.h"
+#include "engine/sequence/pairs/live_pairs.h"
 #include "engine/sequence/pairs/masked_pairs.h"
 #include "engine/sequence/pairs/moving_camera_pairs.h"
 #include "engine/sequence/pairs/packed_pairs.h"
 #include "engine/sequence/pairs/pair_list.h"
 #include "engine/sequence/pairs/several_cameras.h"
 #include "engine/sequence/pairs/streamed_pairs.h"
+#include "engine/sequence/pairs/supplied_pairs.h"
 #include "engine/sequence/pairs/two_camera_pairs.h"
 
 namespace vantage {
@@ -83,6 +85,9 @@ int taken_step(const FrameStep& every, const PairSource& pairs) {
 }
 
 std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
+  if (options.queue != nullptr) {
+    return std::make_unique<SuppliedPairs>(options.queue);
+  }
   if (options.stereo == "-") {
     return std::make_unique<PackedPairs>(
         std::make_unique<StreamedVideo>(options.raw_video, options.raw_rate, options.stop),
@@ -121,7 +126,7 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
 void PairSourceOptions::validate() const {
   const bool two_cameras = !left.empty() || !right.empty();
   const int kinds = (two_cameras ? 1 : 0) + (stereo.empty() ? 0 : 1) + (pairs.empty() ? 0 : 1) +
-                    (sequence.empty() ? 0 : 1);
+                    (sequence.empty() ? 0 : 1) + (queue == nullptr ? 0 : 1);
   if (kinds != 1) {
     throw UsageError(
         fmt::format("{} input{} given, expected exactly one of left and right, stereo, pairs, "
@@ -198,7 +203,7 @@ namespace {
 WhiteLevel white_level_of(PairSource& pairs, std::optional<double> given) {
   WhiteLevelSearch search(given);
   const int count = pairs.pair_count();
-  const int looked_at = std::min(count, kPairsForWhiteLevel);
+  const int looked_at = pairs.is_stream() ? 1 : std::min(count, kPairsForWhiteLevel);
   FramePair pair;
   for (int i = 0; i < looked_at && (i == 0 || search.guesses()); ++i) {
     try {
@@ -224,12 +229,21 @@ std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
     const int step = taken_step(options.every, *all);
     all = std::make_unique<EveryNthPair>(std::move(all), options.every.first, step);
   }
-  if (options.stereo == "-") {
+  if (options.queue != nullptr) {
+    // Who supplies pairs may wait for the result of the first.
+    all = std::make_unique<StreamedPairs>(std::move(all), 1);
+  } else if (options.stereo == "-") {
     all = std::make_unique<StreamedPairs>(std::move(all));
   }
   const bool is_film = options.stereo == "-" || !all->sound().file.empty();
   all->set_white_level(is_film && !options.white_level ? WhiteLevel()
                                                        : white_level_of(*all, options.white_level));
+  if (options.live && !all->is_stream()) {
+    throw UsageError("live is given, but the input is no stream, expected one such as `stereo` -");
+  }
+  if (options.live) {
+    all = std::make_unique<LivePairs>(std::move(all));
+  }
   const bool are_photographs = !options.pairs.empty();
   return std::make_unique<MaskedPairs>(std::move(all), options.masks, are_photographs);
 }

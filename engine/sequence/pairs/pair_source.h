@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -52,6 +53,8 @@ struct FramePair {
   std::array<FetchedFrame, 2> masks;  ///< of `left` and `right`, if they are files
   std::vector<std::string> remarks;   ///< about the frames, and about the pair
   PairDetails details;                ///< see PairSource::details(), of this pair
+  /// When it was there, with PairSourceOptions::live.
+  std::optional<std::chrono::steady_clock::time_point> arrival;
 };
 
 /// Pairs of the input that a run takes: pair `first` and every `pairs`-th after it.
@@ -68,7 +71,9 @@ struct FrameStep {
   friend bool operator==(const FrameStep&, const FrameStep&) = default;
 };
 
-/// Source of the pairs of a run: exactly one of the four.
+class PairQueue;
+
+/// Source of the pairs of a run: exactly one of the five.
 struct PairSourceOptions {
   /// Two sources of open_frame_source(), paired by index: frame i + offset_frames of the right one
   /// belongs to frame i of the left one. With a negative offset the first −offset_frames of the
@@ -96,7 +101,10 @@ struct PairSourceOptions {
   /// camera moved to the left). |step| in 1..1000.
   std::string sequence;
   int step = 1;
+  std::shared_ptr<PairQueue> queue;  ///< of a caller in this process
   FrameStep every;
+  /// Of a stream: fetch() gives the newest pair, and those that came before it are dropped.
+  bool live = false;
   /// What is left out of the images; not of those of `more`.
   SceneMaskOptions masks = {.left = std::string(SceneMaskOptions::kNone)};
   /// Of all images, see WhiteLevelSearch. Empty: what files state, else what up to 8 pairs show,
@@ -140,6 +148,13 @@ class PairSource {
   [[nodiscard]] virtual FrameRange repeatable_pairs() const { return {0, pair_count()}; }
   /// From here on each pair of a stream is fetched once: it holds none for longer.
   virtual void forget_start() {}
+  /// Whether fetch() would not have to wait for what others send; waits for that at most `longest`.
+  virtual bool is_ready(std::chrono::milliseconds longest) {
+    (void)longest;
+    return true;
+  }
+  /// Pairs that a live stream left out so far. Thread rule: any thread.
+  [[nodiscard]] virtual int dropped_pairs() const { return 0; }
   /// The pairs that are made of these frames of the input; the range may be empty.
   [[nodiscard]] virtual FrameRange pairs_of(FrameRange input_frames) const { return input_frames; }
   /// FramePair::index of a pair.

@@ -3,14 +3,26 @@
 #include <algorithm>
 #include <cstddef>
 #include <utility>
+#include <variant>
 
 #include "engine/error.h"
 
 namespace vantage {
 namespace {
 
-constexpr std::size_t kMaxHeld = 16;
 constexpr std::size_t kMaxHeldBytes = std::size_t{256} << 20;
+
+/// The same frame again: a picture that is still to be converted, or a photograph.
+void copy_frame(const FetchedFrame& frame, FetchedFrame& copy) {
+  copy.file.clear();
+  copy.frames_missing = 0;
+  copy.picture = frame.picture.share();
+  copy.remarks = frame.remarks;
+  if (frame.picture.is_empty()) {
+    copy.photograph = std::visit([](const auto& image) { return Photograph{image.copy()}; },
+                                 frame.photograph.pixels);
+  }
+}
 
 }  // namespace
 
@@ -32,8 +44,12 @@ bool StreamedPairs::fetch_and_hold(FramePair& pair) {
       return false;
     }
     const std::size_t bytes = std::max<std::size_t>(1, pair.fetched[0].picture.bytes());
-    limit_ = static_cast<int>(std::clamp<std::size_t>(kMaxHeldBytes / bytes, 1, kMaxHeld));
-    held = {pair.fetched[0].picture.share(), pair.index, pair.remarks, nullptr};
+    limit_ = static_cast<int>(
+        std::clamp<std::size_t>(kMaxHeldBytes / bytes, 1, static_cast<std::size_t>(max_held_)));
+    copy_frame(pair.fetched[0], held.fetched[0]);
+    copy_frame(pair.fetched[1], held.fetched[1]);
+    held.index = pair.index;
+    held.remarks = pair.remarks;
   } catch (const Error&) {
     held.problem = std::current_exception();
   }
@@ -49,11 +65,8 @@ void StreamedPairs::give_held(FramePair& pair) {
   const int place = next_index_++ - first_held_;
   const Held& held = held_[static_cast<std::size_t>(place)];
   const std::exception_ptr problem = held.problem;
-  FetchedFrame& frame = pair.fetched[0];
-  frame.file.clear();
-  frame.frames_missing = 0;
-  frame.picture = held.picture.share();
-  frame.remarks = held.remarks;
+  copy_frame(held.fetched[0], pair.fetched[0]);
+  copy_frame(held.fetched[1], pair.fetched[1]);
   pair.index = held.index;
   pair.remarks = held.remarks;
   if (!holds_) {
@@ -67,7 +80,7 @@ void StreamedPairs::give_held(FramePair& pair) {
 
 bool StreamedPairs::fetch(FramePair& pair) {
   const auto held_end = first_held_ + static_cast<int>(held_.size());
-  if (!held_.empty() && next_index_ >= first_held_ && next_index_ < held_end) {
+  if (is_held(next_index_)) {
     give_held(pair);
     return true;
   }
