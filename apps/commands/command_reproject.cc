@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <optional>
+#include <vector>
 
 #include "apps/commands/commands.h"
 #include "apps/inputs/input_limits.h"
 #include "apps/inputs/kitti_cameras_choice.h"
+#include "apps/inputs/map_camera_input.h"
 #include "apps/match/depth_outputs.h"
 #include "apps/process/command_work.h"
 #include "apps/process/outputs.h"
@@ -20,11 +21,10 @@
 #include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
-#include "engine/options/calibration_settings.h"
+#include "engine/options/given_map_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/metric_settings.h"
 #include "engine/options/pair_source_settings.h"
-#include "engine/options/rig_scale.h"
 #include "engine/options/settings.h"
 
 namespace vantage::apps {
@@ -35,37 +35,30 @@ struct ReprojectJob {
   std::string image;
   std::string unmatched;
   std::string confidence;
-  std::optional<double> disparity_scale;
+  GivenMapOptions given;
   Side reference = Side::kLeft;
   PhotographReading reading;
-  std::string calibration;
-  std::optional<KittiCameras> kitti_cameras;
-  RectificationOptions rectification;
-  RigScale rig;
+  MapCameraInput cameras;
   DepthOutputs outputs;
   CommonOptions common;
 };
 
 void add_reproject_settings(Settings& settings, ReprojectJob& job) {
   settings.start_group("Files");
-  settings.positional("map", job.map, "Disparity map").required = true;
+  settings.positional("map", job.map, "Disparity map, or depth map (--given depth)").required =
+      true;
   settings.input_path("image", job.image, "FILE",
-                      "The rectified image of the map, for the colours of --cloud and --mesh");
+                      "The rectified image of the map, for the colours of --cloud and --mesh; "
+                      "without it they are grey");
   settings.input_path("unmatched", job.unmatched, "MASK.png",
                       "Mask of the pixels that were filled, as match --unmatched writes it");
   settings.input_path("confidence", job.confidence, "FILE",
                       "Confidence of the map, as match --confidence writes it");
-  settings.number("disparity-scale", job.disparity_scale, "S",
-                  "Divide values of an integer file by S; auto: 256 for 16-bit PNG");
+  add_given_map_settings(settings, job.given);
   add_reference_setting(settings, job.reference);
   add_reading_settings(settings, job.reading);
   settings.start_group("Cameras");
-  settings.input_path("calibration", job.calibration, "FILE",
-                      "Cameras of the pair, or of the photographs that it was rectified from: "
-                      "OpenCV, Middlebury or KITTI file");
-  add_kept_outline_setting(settings, job.rectification);
-  add_kitti_cameras_setting(settings, job.kitti_cameras);
-  add_rig_scale_settings(settings, job.rig);
+  add_map_camera_settings(settings, job.cameras, RigUse::kPoints);
   settings.start_group("Output: at least one of these");
   add_depth_output_settings(settings, job.outputs);
   settings.start_group("Points");
@@ -74,24 +67,19 @@ void add_reproject_settings(Settings& settings, ReprojectJob& job) {
 
 void check(const ReprojectJob& job, const Settings& settings) {
   job.common.execution.validate();
-  job.rig.validate(job.calibration);
-  job.rectification.validate();
-  require_above_0("disparity-scale", job.disparity_scale);
+  job.cameras.validate(settings);
+  job.given.validate(settings);
   if (!job.outputs.any()) {
     throw UsageError(
         "there is nothing to write, expected at least one of --depth, --cloud and --mesh");
   }
-  job.rig.require_given(job.calibration, job.outputs.first_option());
-  if (job.calibration.empty()) {
-    settings.refuse_idle({"kept-outline", "kitti-cameras"}, "without --calibration");
-  }
-  if (job.outputs.has_points() && job.image.empty()) {
-    throw UsageError(fmt::format("--{} needs the colours of its pixels, expected --image FILE",
-                                 job.outputs.cloud.empty() ? "mesh" : "cloud"));
-  }
+  job.cameras.rig.require_given(job.cameras.calibration, job.outputs.first_option());
   if (!job.outputs.has_points()) {
     settings.refuse_idle({"image", "orientation", "unmatched", "confidence"},
                          "without --cloud and --mesh");
+  }
+  if (job.image.empty()) {
+    settings.refuse_idle({"orientation"}, "without --image");
   }
   if (!job.outputs.reads_unmatched()) {
     settings.refuse_idle({"unmatched"}, "with --cloud-filled");
@@ -107,15 +95,6 @@ void check(const ReprojectJob& job, const Settings& settings) {
   check_common_files(job.common, files);
 }
 
-MapCamera camera_of(const ReprojectJob& job, int width_px, int height_px) {
-  if (job.calibration.empty()) {
-    return job.rig.camera(width_px, height_px, job.reference, false);
-  }
-  const StereoCalibration cameras = job.rig.read(job.calibration, job.kitti_cameras);
-  return map_camera(rectified_pair(cameras, width_px, height_px, job.rectification), job.reference,
-                    job.rig.required_unit_of(cameras));
-}
-
 /// What belongs to the map.
 struct MapFiles {
   DisparityMap disparity_px;
@@ -124,9 +103,17 @@ struct MapFiles {
   Image<float> confidence;
 };
 
-MapFiles read_files(const ReprojectJob& job, RunReport& report) {
+MapFiles read_files(const ReprojectJob& job, Execution& execution, RunReport& report) {
   MapFiles files;
-  files.disparity_px = read_disparity(job.map, job.disparity_scale.value_or(0));
+  std::vector<Remark> remarks;
+  files.disparity_px = read_given_map(
+      job.map, job.given,
+      [&](int width, int height) { return job.cameras.camera(width, height, job.reference).scale; },
+      execution, remarks);
+  if (job.image.empty() && job.outputs.has_points()) {
+    remarks.push_back({Remark::Kind::kNote, "cloud", "points are grey without `image`"});
+  }
+  tell_remarks(remarks, job.common, report);
   if (!job.image.empty()) {
     files.image = read_photograph(job.image, job.reading);
     Photograph* const image[] = {&files.image};
@@ -167,19 +154,21 @@ int command_reproject(const Arguments& arguments) {
   }
   check(job, settings);
   const std::filesystem::path image[] = {job.image};
-  choose_kitti_cameras(settings, job.common, job.calibration, image, job.kitti_cameras);
+  choose_kitti_cameras(settings, job.common, job.cameras.calibration, image,
+                       job.cameras.kitti_cameras);
   CommandWork work(settings, job.common);
   RunReport& report = work.report;
   Execution& execution = work.execution;
 
-  const MapFiles read = report.timed_file_access("read", [&] { return read_files(job, report); });
+  const MapFiles read =
+      report.timed_file_access("read", [&] { return read_files(job, execution, report); });
   const int width = read.disparity_px.width();
   const int height = read.disparity_px.height();
   const CloudSource source{.disparity_px = read.disparity_px.view(),
-                           .colours = &read.image,
+                           .colours = job.image.empty() ? nullptr : &read.image,
                            .unmatched = read.unmatched.view(),
                            .confidence = read.confidence.view(),
-                           .camera = camera_of(job, width, height)};
+                           .camera = job.cameras.camera(width, height, job.reference)};
   const DepthFiles files = report.timed_compute(
       "depth", [&] { return make_depth_files(job.outputs, source, execution, report); });
   report.timed_file_access("write", [&] { write_depth_files(job.outputs, files); });

@@ -13,7 +13,6 @@
 #include "engine/image/orientation.h"
 #include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/map_io.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/pair_source_settings.h"
@@ -61,13 +60,13 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
                       "Disparity map of the left image; without maps, the pair is matched");
   settings.input_path("right-disparity", pair.right_disparity, "FILE",
                       "Disparity map of the right image");
-  settings.number("disparity-scale", pair.disparity_scale, "S",
-                  "Divide values of integer disparity files by S; auto: 256 for 16-bit PNG");
+  add_given_map_settings(settings, pair.given);
   settings.input_path("calibration", pair.calibration, "FILE",
                       "Cameras, to rectify the pair first if needed: OpenCV, Middlebury or KITTI "
                       "file; given maps belong to rectified images");
   add_kept_outline_setting(settings, pair.rectification);
   add_kitti_cameras_setting(settings, pair.kitti_cameras);
+  add_rig_scale_settings(settings, pair.rig, RigUse::kDepths);
   add_scene_mask_settings(settings, pair.masks);
   add_white_level_setting(settings, pair.white_level);
   add_reading_settings(settings, pair.reading);
@@ -79,7 +78,8 @@ void check_pair(const PairInput& pair, const Settings& settings) {
     throw UsageError(
         "one of --left-disparity and --right-disparity is missing, expected both or none");
   }
-  require_above_0("disparity-scale", pair.disparity_scale);
+  pair.given.validate(settings);
+  pair.rig.validate(pair.calibration);
   if (pair.has_maps()) {
     refuse_idle_match_options(settings);
   } else {
@@ -87,9 +87,13 @@ void check_pair(const PairInput& pair, const Settings& settings) {
     if (pair.match.disparities_y) {
       throw UsageError("--disparities-y cannot be used here: views need rectified pairs");
     }
-    if (pair.disparity_scale) {
-      throw UsageError("--disparity-scale has no effect without --left-disparity");
-    }
+    settings.refuse_idle({"disparity-scale", "given"}, "without --left-disparity");
+  }
+  if (pair.given.holds_depths()) {
+    pair.rig.require_given(pair.calibration, "given");
+  } else {
+    settings.refuse_idle({"calibration-unit", "focal-length", "baseline", "doffs"},
+                         "without --given depth");
   }
   pair.rectification.validate();
   pair.masks.validate();
@@ -109,23 +113,35 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     result.left = read_photograph(pair.left, pair.reading);
     result.right = read_photograph(pair.right, pair.reading);
     require_equal_turns(result.left, result.right);
-    if (pair.has_maps()) {
-      const double scale = pair.disparity_scale.value_or(0);
-      result.maps.left.disparity_px = read_disparity(pair.left_disparity, scale);
-      result.maps.right.disparity_px = read_disparity(pair.right_disparity, scale);
-      require_agreeing_maps(result.maps);
-    }
   });
   Photograph* const images_read[] = {&result.left, &result.right};
   tell_remarks(scale_to_white_level(images_read, pair.white_level), common, report);
   if (!pair.has_maps()) {
     leave_out_of_pair(pair.masks, result.left, result.right);
   }
+  std::optional<StereoCalibration> calibration;
   if (!pair.calibration.empty()) {
     const std::filesystem::path images[] = {pair.left, pair.right};
     choose_kitti_cameras(settings, common, pair.calibration, images, pair.kitti_cameras);
-    result.cameras = rectify(read_stereo_calibration(pair.calibration, pair.kitti_cameras),
-                             pair.rectification, execution, report, result);
+    calibration = pair.rig.read(pair.calibration, pair.kitti_cameras);
+    result.cameras = rectify(*calibration, pair.rectification, execution, report, result);
+  }
+  if (pair.has_maps()) {
+    std::vector<Remark> remarks;
+    report.timed_file_access("read", [&] {
+      const auto camera = [&](int width, int height) {
+        return calibration ? map_camera(*result.cameras, Side::kLeft,
+                                        pair.rig.required_unit_of(*calibration))
+                                 .scale
+                           : pair.rig.camera(width, height, Side::kLeft, false).scale;
+      };
+      result.maps.left.disparity_px =
+          read_given_map(pair.left_disparity, pair.given, camera, execution, remarks);
+      result.maps.right.disparity_px =
+          read_given_map(pair.right_disparity, pair.given, camera, execution, remarks);
+    });
+    require_agreeing_maps(result.maps);
+    tell_remarks(remarks, common, report);
   }
   if (pair.rows.check) {
     const auto rows = correct_rows({.settings = settings,

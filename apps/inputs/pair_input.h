@@ -11,7 +11,9 @@
 #include "engine/image/photograph_reading.h"
 #include "engine/io/images/scene_mask.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/options/given_map_settings.h"
 #include "engine/options/match_settings.h"
+#include "engine/options/rig_scale.h"
 #include "engine/options/settings.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectified_pair.h"
@@ -26,8 +28,9 @@ struct PairInput {
   std::string right;
   std::string left_disparity;  ///< empty, as the next: matched
   std::string right_disparity;
-  std::optional<double> disparity_scale;
+  GivenMapOptions given;
   std::string calibration;  ///< file, empty = a rectified pair of which nothing is known
+  RigScale rig;             ///< of given depths
   std::optional<KittiCameras> kitti_cameras;
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();

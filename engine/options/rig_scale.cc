@@ -127,7 +127,7 @@ MapCamera RigScale::camera(int width_px, int height_px, Side side, bool is_verti
   return result;
 }
 
-void add_rig_scale_settings(Settings& settings, RigScale& scale) {
+void add_rig_scale_settings(Settings& settings, RigScale& scale, RigUse use) {
   settings.flag("already-rectified", scale.images_are_rectified,
                 "The images were rectified with the calibration before: use its P1 and P2, or Q");
   settings.choice<double>(
@@ -136,7 +136,9 @@ void add_rig_scale_settings(Settings& settings, RigScale& scale) {
       "metres_per_unit of OpenCV files");
   settings.number("focal-length", scale.focal_length_px, "PX",
                   "In place of a calibration: focal length of the rectified images");
-  add_principal_point(settings, scale.principal_point_px);
+  if (use == RigUse::kPoints) {
+    add_principal_point(settings, scale.principal_point_px);
+  }
   settings.number("baseline", scale.baseline_m, "METRES",
                   "Distance of the cameras: in place of a calibration, or for one without a scale");
   settings.number("doffs", scale.doffs_px, "PX",

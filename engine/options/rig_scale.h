@@ -45,7 +45,10 @@ struct RigScale {
   [[nodiscard]] MapCamera camera(int width_px, int height_px, Side side, bool is_vertical) const;
 };
 
-/// Binds all of it, in the present group.
-void add_rig_scale_settings(Settings& settings, RigScale& scale);
+/// What the cameras are for: depths do not depend on the principal point.
+enum class RigUse { kPoints, kDepths };
+
+/// Binds all of it that is of use, in the present group.
+void add_rig_scale_settings(Settings& settings, RigScale& scale, RigUse use = RigUse::kPoints);
 
 }  // namespace vantage

@@ -1,6 +1,7 @@
 #include "engine/reprojection/map_camera.h"
 
 #include <Eigen/LU>
+#include <cmath>
 
 namespace vantage {
 namespace {
@@ -45,6 +46,21 @@ void depth_map(ImageView<const float> disparity_px, const DepthScale& scale, dou
     for (int x = 0; x < disparity_px.width(); ++x) {
       const auto value = depth_within(scale, disparity_px.at(x, y), max_depth);
       depths.at(x, y) = value ? static_cast<float>(*value) : kUnknown;
+    }
+  });
+}
+
+void disparity_map(ImageView<const float> depths, const DepthScale& scale, Execution& execution,
+                   Image<float>& disparity_px) {
+  disparity_px.resize(depths.width(), depths.height());
+  const double product = scale.focal_length_px * scale.baseline;
+  execution.for_each_row(depths.height(), [&](int y) {
+    for (int x = 0; x < depths.width(); ++x) {
+      const float depth = depths.at(x, y);
+      disparity_px.at(x, y) =
+          depth > 0 && std::isfinite(depth)
+              ? static_cast<float>(product / static_cast<double>(depth) - scale.doffs_px)
+              : kUnknown;
     }
   });
 }

@@ -44,6 +44,11 @@ constexpr double kNoMaxDepth = std::numeric_limits<double>::infinity();
 void depth_map(ImageView<const float> disparity_px, const DepthScale& scale, double max_depth,
                Execution& execution, Image<float>& depths);
 
+/// The opposite: disparities f · b / Z − doffs of depths in the unit of the baseline, NaN where a
+/// depth is not above 0 or not finite. Resizes `disparity_px`. Identical for any `execution`.
+void disparity_map(ImageView<const float> depths, const DepthScale& scale, Execution& execution,
+                   Image<float>& disparity_px);
+
 /// Points of a map: X, Y, Z in three channels, all NaN where depth_map() has NaN. Resizes `points`.
 /// Identical for any `execution`.
 void reproject(ImageView<const float> disparity_px, const MapCamera& camera, double max_depth,

@@ -11,6 +11,8 @@
 namespace vantage {
 namespace {
 
+constexpr std::uint8_t kMiddleGrey = 128;
+
 void require_size(std::string_view name, int width, int height,
                   ImageView<const float> disparity_px) {
   if (width != disparity_px.width() || height != disparity_px.height()) {
@@ -21,10 +23,12 @@ void require_size(std::string_view name, int width, int height,
 
 void check(const CloudSource& source, const CloudOptions& options) {
   options.validate();
-  if (source.disparity_px.empty() || source.colours == nullptr) {
-    throw Error("a cloud needs a disparity map and its image, expected at least one pixel");
+  if (source.disparity_px.empty()) {
+    throw Error("a cloud needs a disparity map, expected at least one pixel");
   }
-  require_size("image", source.colours->width(), source.colours->height(), source.disparity_px);
+  if (source.colours != nullptr) {
+    require_size("image", source.colours->width(), source.colours->height(), source.disparity_px);
+  }
   if (!source.unmatched.empty()) {
     require_size("mask of filled pixels", source.unmatched.width(), source.unmatched.height(),
                  source.disparity_px);
@@ -41,7 +45,10 @@ bool jumps(float a, float b, float limit_px) { return std::abs(a - b) > limit_px
 class PixelPoints {
  public:
   PixelPoints(const CloudSource& source, const CloudOptions& options, Execution& execution)
-      : source_(source), options_(options), colours_(eight_bit(*source.colours)) {
+      : source_(source), options_(options) {
+    if (source.colours != nullptr) {
+      colours_ = eight_bit(*source.colours);
+    }
     reproject(source.disparity_px, source.camera, options.max_depth.value_or(kNoMaxDepth),
               execution, points_);
     if (!options.keeps_outlines) {
@@ -62,7 +69,8 @@ class PixelPoints {
     cloud.positions.insert(cloud.positions.end(), point, point + 3);
     const bool is_grey = colours_.channels() == 1;
     for (int channel = 0; channel < 3; ++channel) {
-      cloud.colours.push_back(colours_.at(x, y, is_grey ? 0 : channel));
+      cloud.colours.push_back(colours_.empty() ? kMiddleGrey
+                                               : colours_.at(x, y, is_grey ? 0 : channel));
     }
     if (options_.with_confidence) {
       cloud.confidence.push_back(source_.confidence.at(x, y));
@@ -72,7 +80,7 @@ class PixelPoints {
  private:
   const CloudSource& source_;
   const CloudOptions& options_;
-  Image<std::uint8_t> colours_;
+  Image<std::uint8_t> colours_;  // empty: all points are grey
   Image<float> points_;
   Mask outlines_;
 };

@@ -39,7 +39,7 @@ struct CloudOptions {
 /// A map and what belongs to it, all of equal size. Nothing is owned.
 struct CloudSource {
   ImageView<const float> disparity_px = {};
-  const Photograph* colours = nullptr;           ///< the rectified image
+  const Photograph* colours = nullptr;           ///< the rectified image; null: points are grey
   ImageView<const std::uint8_t> unmatched = {};  ///< 255 where filled; empty: no pixel is
   ImageView<const float> confidence = {};        ///< if CloudOptions::reads_confidence()
   MapCamera camera = {};

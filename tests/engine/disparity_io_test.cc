@@ -96,6 +96,7 @@ TEST(DisparityIo, ReadsPfmOfOtherWriters) {
   expect("Pf\r\n2 1\r\n-0.0039\r\n" + little);
   expect("Pf 2 1 -1 " + little);
   expect("Pf\n2\n1\n-1e0 \n" + little);
+  expect("Pf # of a camera\n# 2014\n2 1\n#-\n-1\n" + little);
   // A first data byte that happens to be a line end belongs to the data.
   const float tricky = std::bit_cast<float>(0x4220000AU);
   put_text(folder / "d.pfm", "Pf\n1 1\n-1 " + little_endian(tricky));
@@ -193,11 +194,12 @@ TEST(DisparityIo, RefusesOtherNpyAndSaysWhy) {
     EXPECT_THAT(error_of([&] { read_disparity(folder / "d.npy"); }), HasSubstr(expected));
   };
   const std::string data(8, '\0');
-  refuse(npy("{'descr': '>f4', 'fortran_order': False, 'shape': (1, 2), }", data), ">f4");
-  refuse(npy("{'descr': '<i4', 'fortran_order': False, 'shape': (1, 2), }", data), "<i4");
-  refuse(npy("{'descr': '<f4', 'fortran_order': True, 'shape': (1, 2), }", data), "Fortran");
+  refuse(npy("{'descr': '<c8', 'fortran_order': False, 'shape': (1, 1), }", data), "<c8");
+  refuse(npy("{'descr': '|b1', 'fortran_order': False, 'shape': (1, 2), }", data), "|b1");
+  refuse(npy("{'descr': '<i4', 'fortran_order': False, 'shape': (1, 2), }", data),
+         "16 for maps of OpenCV's matchers");
   refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (2,), }", data), "shape (2,)");
-  refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2, 1), }", data), "shape");
+  refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2, 2), }", data), "shape");
   refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (0, 2), }", data), "2x0");
   refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (99999, 99999), }", data),
          "at most");

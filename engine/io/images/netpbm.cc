@@ -22,10 +22,7 @@ bool is_blank(std::uint8_t character) {
 /// Reads the blank-separated words of PNM and PFM headers. Does not own the bytes.
 class TextHeader {
  public:
-  enum class Comments { kHash, kNone };
-
-  TextHeader(const FileBytes& file, std::size_t offset, Comments comments)
-      : file_(file), offset_(offset), comments_(comments) {}
+  TextHeader(const FileBytes& file, std::size_t offset) : file_(file), offset_(offset) {}
 
   /// The next word, at most 64 characters. Throws Error at the end of the file.
   std::string word() {
@@ -57,7 +54,7 @@ class TextHeader {
   }
   /// Position directly after the last word.
   [[nodiscard]] std::size_t offset() const { return offset_; }
-  /// Skips the blanks (and comments) before the next word; false at the end of the file.
+  /// Skips the blanks and comments before the next word; false at the end of the file.
   bool skip_blanks() {
     const auto bytes = file_.all();
     bool in_comment = false;
@@ -65,7 +62,7 @@ class TextHeader {
       const std::uint8_t c = bytes[offset_];
       if (in_comment) {
         in_comment = c != '\n' && c != '\r';
-      } else if (c == '#' && comments_ == Comments::kHash) {
+      } else if (c == '#') {
         in_comment = true;
       } else if (!is_blank(c)) {
         return true;
@@ -78,7 +75,6 @@ class TextHeader {
  private:
   const FileBytes& file_;
   std::size_t offset_;
-  Comments comments_;
 };
 
 struct PnmHeader {
@@ -121,7 +117,7 @@ Image<std::uint8_t> decode_text_bitmap(const FileBytes& file, const PnmHeader& h
   Image<std::uint8_t> image(header.width, header.height);
   for (int y = 0; y < header.height; ++y) {
     for (int x = 0; x < header.width; ++x) {
-      TextHeader blanks(file, offset, TextHeader::Comments::kHash);
+      TextHeader blanks(file, offset);
       blanks.skip_blanks();
       const std::uint8_t digit = file.byte(blanks.offset());
       if (digit != '0' && digit != '1') {
@@ -176,7 +172,7 @@ PnmImage decode_pnm(const FileBytes& file) {
     file.fail("is not a PNM file, expected it to begin with P1 to P6");
   }
   header.channels = header.kind == 3 || header.kind == 6 ? 3 : 1;
-  TextHeader words(file, 2, TextHeader::Comments::kHash);
+  TextHeader words(file, 2);
   header.width = words.number("width");
   header.height = words.number("height");
   file.check_dimensions(header.width, header.height);
@@ -247,7 +243,7 @@ Image<float> decode_pfm(const FileBytes& file) {
     file.fail("is not a PFM file, expected it to begin with Pf or PF");
   }
   const int channels = file.has_at(0, "PF") ? 3 : 1;
-  TextHeader header(file, 2, TextHeader::Comments::kNone);
+  TextHeader header(file, 2);
   const int width = header.number("width");
   const int height = header.number("height");
   file.check_dimensions(width, height);

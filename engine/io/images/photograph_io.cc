@@ -52,8 +52,9 @@ Image<T> from_bgr(const cv::Mat& decoded, Photograph& memory) {
   return image;
 }
 
+/// `signed_bits`: as of DecodedImage.
 Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_t> bytes,
-                              Photograph& memory) {
+                              Photograph& memory, int& signed_bits) {
   prepare_opencv();
   if (bytes.size() > INT_MAX) {
     file.fail(
@@ -76,7 +77,11 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
   if (decoded.channels() != 1 && decoded.channels() != 3 && decoded.channels() != 4) {
     file.fail(fmt::format("has {} channels, expected 1, 3 or 4", decoded.channels()));
   }
-  if (decoded.depth() == CV_64F) {
+  const int depth = decoded.depth();
+  if (depth == CV_8S || depth == CV_16S || depth == CV_32S) {
+    signed_bits = 8 * static_cast<int>(decoded.elemSize1());
+  }
+  if (depth == CV_64F || signed_bits > 0) {
     decoded.convertTo(decoded, CV_32F);
   }
   switch (decoded.depth()) {
@@ -202,7 +207,7 @@ DecodedImage decode(const FileBytes& file, const PhotographReading& reading, Pho
       break;
     default:
       stated = check_image_header(file, format);
-      result.photograph = decode_with_opencv(file, file.all(), memory);
+      result.photograph = decode_with_opencv(file, file.all(), memory, result.signed_bits);
       result.photograph.origin.white_level = stated.white_level;
   }
   if (reading.turns_upright) {
@@ -274,6 +279,9 @@ Photograph read_photograph(const std::filesystem::path& path, const PhotographRe
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
   DecodedImage stored = decode_image(file, reading, std::move(memory));
+  if (stored.signed_bits > 0) {
+    file.fail("holds integers with a sign, expected unsigned 8-bit, unsigned 16-bit or float");
+  }
   if (const auto* floats = std::get_if<Image<float>>(&stored.photograph.pixels)) {
     check_finite(file, *floats);
     return std::move(stored.photograph);

@@ -15,6 +15,7 @@ namespace vantage {
 struct DecodedImage {
   Photograph photograph;
   int max_value = 255;  ///< of integer values
+  int signed_bits = 0;  ///< floats were stored as signed integers of so many bits; 0: they were not
 };
 
 /// Decodes an image of any format that read_photograph() supports. Reuses `memory` if it has the

@@ -11,6 +11,7 @@
 #include "engine/image/image.h"
 #include "engine/image/side.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/maps/stored_map.h"
 
 namespace vantage {
 
@@ -47,7 +48,7 @@ struct MapFormat {
   bool (*recognizes)(const FileBytes& file) = nullptr;
   /// The values of a file that recognizes() accepts. Throws Error if the file is damaged, before it
   /// allocates memory for more than the file holds. Null where recognizes is null.
-  Image<float> (*decode)(const FileBytes& file) = nullptr;
+  StoredMap (*decode)(const FileBytes& file) = nullptr;
 
   [[nodiscard]] bool can_hold(MapContent content) const;
 };

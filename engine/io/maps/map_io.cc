@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -19,18 +20,40 @@
 namespace vantage {
 namespace {
 
-constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-
-template <typename T>
-DisparityMap from_integers(const Image<T>& image, double scale) {
-  DisparityMap map(image.width(), image.height());
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      const T value = image.at(x, y);
-      map.at(x, y) = value == 0 ? kUnknown : static_cast<float>(value / scale);
-    }
+/// Of a file that holds a `what` map.
+StoredMap read_stored(const FileBytes& file, const char* what) {
+  if (const MapFormat* const format = find_map_format(file)) {
+    return format->decode(file);
   }
-  return map;
+  DecodedImage stored = decode_image(file);
+  if (stored.photograph.channels() != 1) {
+    file.fail(
+        fmt::format("has {} channels, expected a {} map of 1", stored.photograph.channels(), what));
+  }
+  return std::visit(
+      [&]<typename T>(Image<T>& image) -> StoredMap {
+        if constexpr (std::is_same_v<T, float>) {
+          return {.values = std::move(image),
+                  .integer_bits = stored.signed_bits,
+                  .is_signed = stored.signed_bits > 0};
+        } else {
+          StoredMap map{.values = Image<float>(image.width(), image.height()),
+                        .integer_bits = 8 * static_cast<int>(sizeof(T))};
+          for (int y = 0; y < image.height(); ++y) {
+            std::copy(image.row(y), image.row(y) + image.width(), map.values.row(y));
+          }
+          map.default_scale =
+              sizeof(T) == 2 && file.has_at(0, "\x89PNG") ? kIntegerDisparityScale : 0;
+          return map;
+        }
+      },
+      stored.photograph.pixels);
+}
+
+void require_scale(double scale, const char* what) {
+  if (!(scale >= 0) || !std::isfinite(scale)) {
+    throw UsageError(fmt::format("{} scale is {}, expected a number above 0", what, scale));
+  }
 }
 
 /// The format of a map of one component; what = "disparity" or "depth".
@@ -52,53 +75,30 @@ const MapFormat& format_of(const std::filesystem::path& path, ImageView<const fl
 
 }  // namespace
 
-DisparityMap read_disparity(const std::filesystem::path& path, double scale) {
-  if (!(scale >= 0) || !std::isfinite(scale)) {
-    throw UsageError(fmt::format("disparity scale is {}, expected a number above 0", scale));
-  }
+DisparityMap read_disparity(const std::filesystem::path& path, double scale,
+                            std::vector<Remark>* remarks) {
+  require_scale(scale, "disparity");
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
-  if (const MapFormat* const format = find_map_format(file)) {
-    return with_nan(format->decode(file).view());
-  }
-  const bool is_png = file.has_at(0, "\x89PNG");
-  const DecodedImage stored = decode_image(file);
-  if (stored.photograph.channels() != 1) {
-    file.fail(fmt::format("has {} channels, expected a disparity map of 1",
-                          stored.photograph.channels()));
-  }
-  return std::visit(
-      [&]<typename T>(const Image<T>& image) -> DisparityMap {
-        if constexpr (std::is_same_v<T, float>) {
-          return with_nan(image.view());
-        } else {
-          const bool has_default = is_png && sizeof(T) == 2;
-          if (scale == 0 && !has_default) {
-            file.fail(
-                "holds integers, expected a scale to divide them by (`scale`, `disparity-scale`; "
-                "256 for 16-bit PNG)");
-          }
-          return from_integers(image, scale > 0 ? scale : kIntegerDisparityScale);
-        }
-      },
-      stored.photograph.pixels);
+  return disparities_of(read_stored(file, "disparity"), scale, path.string(), remarks);
+}
+
+Image<float> read_depth(const std::filesystem::path& path, double scale,
+                        std::vector<Remark>* remarks) {
+  require_scale(scale, "depth");
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+  const FileBytes file(bytes, path.string());
+  return depths_of(read_stored(file, "depth"), scale, path.string(), remarks);
 }
 
 Image<float> read_float_image(const std::filesystem::path& path) {
   const std::vector<std::uint8_t> bytes = read_file_bytes(path);
   const FileBytes file(bytes, path.string());
-  if (const MapFormat* const format = find_map_format(file)) {
-    return with_nan(format->decode(file).view());
+  const StoredMap stored = read_stored(file, "float");
+  if (stored.integer_bits > 0) {
+    file.fail("holds integers, expected floats");
   }
-  const DecodedImage stored = decode_image(file);
-  const auto* const floats = std::get_if<Image<float>>(&stored.photograph.pixels);
-  const int channels = stored.photograph.channels();
-  if (floats == nullptr || channels != 1) {
-    file.fail(fmt::format("holds {} in {} channel{}, expected floats in 1 channel",
-                          floats == nullptr ? "integers" : "floats", channels,
-                          channels == 1 ? "" : "s"));
-  }
-  return with_nan(floats->view());
+  return with_nan(stored.values.view());
 }
 
 void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,

@@ -7,16 +7,25 @@
 #include "engine/image/displacement_view.h"
 #include "engine/image/image.h"
 #include "engine/image/side.h"
+#include "engine/remark.h"
 
 namespace vantage {
 
 /// Reads a disparity map; its content determines the format: .pfm (±inf = unknown), 16-bit .png
-/// (÷256, 0 = unknown), .tiff/.exr (float, NaN = unknown), .npy (float32/float64, 2-D), and 8-bit
-/// .png/.pgm (÷scale, 0 = unknown). `scale` (> 0) divides integer values and replaces the 256 of
-/// 16-bit PNG when given; 0 means the format's default (8-bit files have none: Error). Unknown
-/// becomes NaN. Throws Error naming the file and the problem, UsageError for a negative scale.
-/// Thread rule: may be called concurrently.
-DisparityMap read_disparity(const std::filesystem::path& path, double scale = 0);
+/// (÷256, 0 = unknown), .tiff/.exr (float, NaN = unknown), .npy (floats or integers), 8-bit
+/// .png/.pgm (÷scale, 0 = unknown), .tiff of integers, with or without a sign. `scale` (> 0)
+/// divides integer values and replaces the 256 of 16-bit PNG when given; 0 means the format's
+/// default (other files have none: Error). Unknown becomes NaN (stored_map.h, also of OpenCV's
+/// maps). `remarks`, if given, gets what was assumed. Throws Error naming the file and the problem,
+/// UsageError for a negative scale. Thread rule: may be called concurrently.
+DisparityMap read_disparity(const std::filesystem::path& path, double scale = 0,
+                            std::vector<Remark>* remarks = nullptr);
+
+/// Reads a depth map in metres, in the same formats: values divided by `scale`, their number per
+/// metre (> 0); 0: 1000 for integers, 1 for floats. Unknown, 0 and negative become NaN. Otherwise
+/// as read_disparity().
+Image<float> read_depth(const std::filesystem::path& path, double scale = 0,
+                        std::vector<Remark>* remarks = nullptr);
 
 /// Reads a file with one channel of floats, which may be NaN: .tiff, .pfm, .exr, .npy. Infinite
 /// values become NaN. Throws Error naming the file and the problem.

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -56,49 +59,80 @@ struct Shape {
   int width = 0;
 };
 
-/// Parses "480, 640" (a comma may follow).
+/// Parses "480, 640" (a comma may follow), without sides of 1 before or after these two.
 std::optional<Shape> parse_shape(std::string_view text) {
-  Shape shape;
-  const auto take = [&](int& number) {
-    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || number < 0) {
-      return false;
+  std::vector<int> sides;
+  while (text.find_first_not_of(' ') != std::string_view::npos) {
+    text.remove_prefix(text.find_first_not_of(' '));
+    int side = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
+    if (error != std::errc() || side < 0) {
+      return std::nullopt;
     }
+    sides.push_back(side);
     text.remove_prefix(static_cast<std::size_t>(end - text.data()));
     text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-    return true;
-  };
-  if (!take(shape.height) || !text.starts_with(',')) {
-    return std::nullopt;
+    if (!text.empty() && text[0] != ',') {
+      return std::nullopt;
+    }
+    text.remove_prefix(std::min<std::size_t>(1, text.size()));
   }
-  text.remove_prefix(1);
-  if (!take(shape.width)) {
-    return std::nullopt;
+  while (sides.size() > 2 && sides.back() == 1) {
+    sides.pop_back();
   }
-  const bool complete = text.empty() || text.find_first_not_of(' ', 1) == std::string_view::npos;
-  return complete && (text.empty() || text[0] == ',') ? std::optional(shape) : std::nullopt;
+  while (sides.size() > 2 && sides.front() == 1) {
+    sides.erase(sides.begin());
+  }
+  return sides.size() == 2 ? std::optional<Shape>({sides[0], sides[1]}) : std::nullopt;
 }
 
+/// Where the values are, and how they are stored.
+struct Layout {
+  std::size_t begin = 0;
+  bool is_big_endian = false;
+  bool is_fortran = false;
+};
+
 template <typename Stored>
-void copy_rows(const FileBytes& file, std::size_t begin, Image<float>& image) {
-  const std::size_t row_bytes = sizeof(Stored) * static_cast<std::size_t>(image.width());
-  for (int y = 0; y < image.height(); ++y) {
-    const auto source = file.part(begin + row_bytes * static_cast<std::size_t>(y), row_bytes);
-    for (int x = 0; x < image.width(); ++x) {
+void copy_values(const FileBytes& file, const Layout& layout, Image<float>& image) {
+  const auto width = static_cast<std::size_t>(image.width());
+  const auto height = static_cast<std::size_t>(image.height());
+  const auto source = file.part(layout.begin, sizeof(Stored) * width * height);
+  for (std::size_t y = 0; y < height; ++y) {
+    float* const row = image.row(static_cast<int>(y));
+    for (std::size_t x = 0; x < width; ++x) {
+      std::array<std::uint8_t, sizeof(Stored)> bytes;
+      const std::size_t index = layout.is_fortran ? x * height + y : y * width + x;
+      std::memcpy(bytes.data(), source.data() + sizeof(Stored) * index, sizeof(Stored));
+      if (layout.is_big_endian) {
+        std::reverse(bytes.begin(), bytes.end());
+      }
       Stored value;
-      std::memcpy(&value, source.data() + sizeof(Stored) * static_cast<std::size_t>(x),
-                  sizeof(Stored));
-      image.at(x, y) = static_cast<float>(value);
+      std::memcpy(&value, bytes.data(), sizeof(Stored));
+      row[x] = static_cast<float>(value);
     }
   }
 }
+
+/// A type of values by NumPy's name, without the byte order.
+struct NpyType {
+  std::string_view name;
+  int integer_bits;
+  void (*copy)(const FileBytes& file, const Layout& layout, Image<float>& image);
+};
+constexpr NpyType kNpyTypes[] = {
+    {"f2", 0, copy_values<Eigen::half>},    {"f4", 0, copy_values<float>},
+    {"f8", 0, copy_values<double>},         {"i1", 8, copy_values<std::int8_t>},
+    {"u1", 8, copy_values<std::uint8_t>},   {"i2", 16, copy_values<std::int16_t>},
+    {"u2", 16, copy_values<std::uint16_t>}, {"i4", 32, copy_values<std::int32_t>},
+    {"u4", 32, copy_values<std::uint32_t>}, {"i8", 64, copy_values<std::int64_t>},
+    {"u8", 64, copy_values<std::uint64_t>}};
 
 }  // namespace
 
 bool is_npy(const FileBytes& file) { return file.has_at(0, kMagic); }
 
-Image<float> decode_npy(const FileBytes& file) {
+StoredMap decode_npy(const FileBytes& file) {
   if (!is_npy(file)) {
     file.fail("is not a NumPy array file");
   }
@@ -121,12 +155,17 @@ Image<float> decode_npy(const FileBytes& file) {
   const bool is_plain_type = type_value[0] == '\'' || type_value[0] == '"';
   const std::string_view type =
       is_plain_type ? enclosed(file, type_value, type_value[0]) : "record";
-  if (type != "<f4" && type != "<f8") {
-    file.fail(fmt::format("holds values of type {}, expected <f4 or <f8", quotable(type)));
+  const auto* const stored = std::ranges::find_if(kNpyTypes, [&](const NpyType& known) {
+    return type.size() == 3 && std::string_view("<>|=").find(type[0]) != std::string_view::npos &&
+           type.substr(1) == known.name;
+  });
+  if (stored == std::end(kNpyTypes)) {
+    file.fail(
+        fmt::format("holds values of type {}, expected floats or integers (f2, f4, f8, i1 to "
+                    "u8)",
+                    quotable(type)));
   }
-  if (!find_value(file, dictionary, "fortran_order").starts_with("False")) {
-    file.fail("is in Fortran order, expected C order");
-  }
+  const std::string_view order = find_value(file, dictionary, "fortran_order");
   const std::string_view shape_text = enclosed(file, find_value(file, dictionary, "shape"), ')');
   const std::optional<Shape> shape = parse_shape(shape_text);
   if (!shape) {
@@ -136,20 +175,20 @@ Image<float> decode_npy(const FileBytes& file) {
   const int width = shape->width;
   file.check_dimensions(width, height);
 
-  const std::size_t begin = header_begin + header_bytes;
-  const std::size_t payload = (type == "<f4" ? 4U : 8U) * static_cast<std::size_t>(width) *
-                              static_cast<std::size_t>(height);
-  if (file.size() - begin < payload) {
+  const Layout layout{.begin = header_begin + header_bytes,
+                      .is_big_endian = type[0] == '>',
+                      .is_fortran = order.starts_with("True")};
+  const std::size_t payload = static_cast<std::size_t>(type[2] - '0') *
+                              static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  if (file.size() - layout.begin < payload) {
     file.fail(fmt::format("is truncated, {}x{} values take {} bytes but {} follow the header",
-                          width, height, payload, file.size() - begin));
+                          width, height, payload, file.size() - layout.begin));
   }
-  Image<float> image(width, height);
-  if (type == "<f4") {
-    copy_rows<float>(file, begin, image);
-  } else {
-    copy_rows<double>(file, begin, image);
-  }
-  return image;
+  StoredMap map{.values = Image<float>(width, height),
+                .integer_bits = stored->integer_bits,
+                .is_signed = type[1] == 'i'};
+  stored->copy(file, layout, map.values);
+  return map;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 
 #include "engine/image/image.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/maps/stored_map.h"
 
 namespace vantage {
 
@@ -14,9 +15,10 @@ namespace vantage {
 /// True when `file` starts like a NumPy array file.
 bool is_npy(const FileBytes& file);
 
-/// Decodes a NumPy array file, format versions 1 to 3, of shape (height, width), type <f4 or <f8
-/// (rounded to float) in C order. Throws Error that names any other type, order or shape.
-Image<float> decode_npy(const FileBytes& file);
+/// Decodes a NumPy array file, format versions 1 to 3: floats of 16, 32 and 64 bits or integers of
+/// 8 to 64, in either byte order, rounded to float; C or Fortran order; of shape (height, width),
+/// also with further sides of 1 before or after. Throws Error that names any other type or shape.
+StoredMap decode_npy(const FileBytes& file);
 
 /// Encodes as <f4 in C order, format version 1.0; of shape (height, width), or (height, width,
 /// channels) for several channels.

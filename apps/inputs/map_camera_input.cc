@@ -1,0 +1,31 @@
+#include "apps/inputs/map_camera_input.h"
+
+namespace vantage::apps {
+
+void MapCameraInput::validate(const Settings& settings) const {
+  rig.validate(calibration);
+  rectification.validate();
+  if (calibration.empty()) {
+    settings.refuse_idle({"kept-outline", "kitti-cameras"}, "without --calibration");
+  }
+}
+
+MapCamera MapCameraInput::camera(int width_px, int height_px, Side side) const {
+  if (calibration.empty()) {
+    return rig.camera(width_px, height_px, side, false);
+  }
+  const StereoCalibration cameras = rig.read(calibration, kitti_cameras);
+  return map_camera(rectified_pair(cameras, width_px, height_px, rectification), side,
+                    rig.required_unit_of(cameras));
+}
+
+void add_map_camera_settings(Settings& settings, MapCameraInput& cameras, RigUse use) {
+  settings.input_path("calibration", cameras.calibration, "FILE",
+                      "Cameras of the pair, or of the photographs that it was rectified from: "
+                      "OpenCV, Middlebury or KITTI file");
+  add_kept_outline_setting(settings, cameras.rectification);
+  add_kitti_cameras_setting(settings, cameras.kitti_cameras);
+  add_rig_scale_settings(settings, cameras.rig, use);
+}
+
+}  // namespace vantage::apps
