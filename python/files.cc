@@ -8,12 +8,17 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/io/images/preview.h"
 #include "engine/io/maps/map_io.h"
+#include "engine/options/given_map_settings.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
+#include "python/metres.h"
+#include "python/options.h"
+#include "python/remark_warnings.h"
 
 namespace vantage::python {
 namespace py = pybind11;
@@ -32,9 +37,50 @@ void write_image(const py::object& path, const py::object& image, bool bgr) {
   without_gil([&] { write_photograph(file, pixels.copy()); });
 }
 
-py::array read_map(const py::object& path, double scale) {
+/// Of a file: there is no report that would have notes.
+void warn_of_assumed(std::vector<Remark>& remarks) {
+  for (Remark& remark : remarks) {
+    remark.kind = Remark::Kind::kWarning;
+  }
+  RemarkWarnings().warn(remarks);
+}
+
+py::array read_map(const py::object& path, double scale,
+                   const std::optional<StereoCalibration>& calibration, py::dict keywords) {
   const std::string file = path_of(path);
-  return array_of(without_gil([&] { return read_disparity(file, scale); }));
+  Execution& execution = take_execution(keywords);
+  GivenMapOptions given;
+  MetricOptions options;
+  Settings settings;
+  settings.choice<MapQuantity>(
+      "given", given.quantity,
+      {{"disparity", MapQuantity::kDisparity}, {"depth", MapQuantity::kDepth}}, "");
+  add_rig_scale_settings(settings, options.rig, RigUse::kDepths);
+  set_options(settings, keywords);
+  if (!given.holds_depths() && (calibration || keywords.size() > 1)) {
+    throw UsageError("cameras have no effect without given=\"depth\"");
+  }
+  given.depth_scale = scale;
+  std::vector<Remark> remarks;
+  // Reading alone does not wait for other work on the threads.
+  if (!given.holds_depths()) {
+    DisparityMap map = without_gil([&] { return read_disparity(file, scale, &remarks); });
+    warn_of_assumed(remarks);
+    return array_of(std::move(map));
+  }
+  DisparityMap map = on_threads_of(execution, [&] {
+    const auto camera = [&](int width, int height) {
+      const DisparityMap size(width, height);
+      return metric_camera({.disparity_px = size.view()}, calibration, options,
+                           MetricOutput::kDepth)
+          .camera.scale;
+    };
+    return read_given_map(file, given, camera, execution, remarks);
+  });
+  if (scale == 0) {
+    warn_of_assumed(remarks);
+  }
+  return array_of(std::move(map));
 }
 
 void write_map(const py::object& path, const py::object& disparity) {

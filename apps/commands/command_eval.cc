@@ -1,21 +1,30 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 
 #include "apps/commands/commands.h"
+#include "apps/eval/folder_scores.h"
+#include "apps/eval/score_columns.h"
+#include "apps/eval/submission.h"
 #include "apps/inputs/input_limits.h"
+#include "apps/inputs/map_camera_input.h"
 #include "apps/process/command_work.h"
 #include "apps/process/outputs.h"
+#include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
 #include "apps/settings/command_line.h"
 #include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/evaluation/disparity_evaluation.h"
 #include "engine/evaluation/view_evaluation.h"
+#include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
-#include "engine/io/maps/map_io.h"
+#include "engine/options/given_map_settings.h"
 #include "engine/options/settings.h"
 
 namespace vantage::apps {
@@ -26,52 +35,105 @@ struct EvalJob {
   std::string first;
   std::string second;
   bool views = false;
-  std::optional<double> truth_scale;
-  std::optional<double> disparity_scale;
+  GivenMapOptions given;
+  GivenMapOptions truth;  ///< its quantity and scale
+  MapCameraInput cameras;
   std::string mask;
   int ignore_border_px = 0;
+  std::string csv;
+  SubmissionOptions submission;
+
+  [[nodiscard]] bool has_folders() const { return !views && std::filesystem::is_directory(second); }
 };
 
 /// A row of the table on stdout.
 struct Row {
-  const char* label;
-  const char* key;  ///< in the report
+  std::string_view label;
+  std::string_view key;  ///< in the report
   double value;
-  const char* unit;
+  std::string_view unit;
 };
 
 void add_eval_settings(Settings& settings, EvalJob& job) {
   settings.start_group("Files");
   settings
-      .positional("disparity", job.first, "Disparity map to evaluate; with --views a photograph")
+      .positional("disparity", job.first,
+                  "Disparity map to evaluate, or a folder of maps; with --views a photograph")
       .required = true;
-  settings.positional("truth", job.second, "True disparity map; with --views the true photograph")
+  settings
+      .positional("truth", job.second,
+                  "True disparity map, or a folder of KITTI, Middlebury or ETH3D, or of true maps; "
+                  "with --views the true photograph")
       .required = true;
   settings.flag("views", job.views, "Compare two photographs, not disparity maps");
-  settings.number("scale", job.truth_scale, "S",
-                  "Divide values of an integer TRUTH file by S; auto: 256 for 16-bit PNG; required "
-                  "for 8-bit files");
-  settings.number("disparity-scale", job.disparity_scale, "S",
-                  "Divide values of an integer DISPARITY file by S, as --scale");
+  settings.number(
+      "scale", job.truth.disparity_scale, "S",
+      "Divide values of an integer TRUTH file by S; auto: 256 for 16-bit PNG, in folders "
+      "what Middlebury states; otherwise required for 8-bit files");
+  add_given_map_settings(settings, job.given);
+  settings.choice<MapQuantity>(
+      "given-truth", job.truth.quantity,
+      {{"disparity", MapQuantity::kDisparity}, {"depth", MapQuantity::kDepth}},
+      "The same of TRUTH");
   settings.input_path("mask", job.mask, "FILE",
                       "Evaluate only pixels that are white in this 8-bit image");
   settings.integer("ignore-border", job.ignore_border_px, "PX",
                    "Number of rows and columns to leave out at each side");
+  settings.start_group("Cameras, for given depths");
+  add_map_camera_settings(settings, job.cameras, RigUse::kDepths);
+  settings.start_group("Folders");
+  settings.path("csv", job.csv, "FILE.csv", "Write the table of a folder");
+  add_submission_settings(settings, job.submission);
+}
+
+void check_depths(const EvalJob& job, const Settings& settings) {
+  require_above_0("scale", job.truth.disparity_scale);
+  require_above_0("disparity-scale", job.given.disparity_scale);
+  require_above_0("depth-scale", job.given.depth_scale);
+  job.cameras.validate(settings);
+  if (job.given.holds_depths() || job.truth.holds_depths()) {
+    job.cameras.rig.require_given(job.cameras.calibration,
+                                  job.given.holds_depths() ? "given" : "given-truth");
+  } else {
+    settings.refuse_idle({"depth-scale", "calibration", "focal-length"}, "without --given depth");
+  }
 }
 
 void check(const EvalJob& job, const Settings& settings) {
   job.common.execution.validate();
-  require_above_0("scale", job.truth_scale);
-  require_above_0("disparity-scale", job.disparity_scale);
+  check_depths(job, settings);
+  check_submission(job.submission, settings);
   if (job.ignore_border_px < 0) {
     throw UsageError(
         fmt::format("--ignore-border is {}, expected at least 0", job.ignore_border_px));
   }
-  if (job.views && (job.truth_scale || job.disparity_scale || job.ignore_border_px != 0)) {
-    throw UsageError("--scale, --disparity-scale and --ignore-border cannot be used with --views");
+  if (job.views) {
+    settings.refuse_idle({"scale", "disparity-scale", "given", "given-truth", "ignore-border"},
+                         "with --views");
+  }
+  if (job.has_folders()) {
+    settings.refuse_idle({"mask", "given-truth"}, "with folders");
+    if (!std::filesystem::is_directory(job.first)) {
+      throw UsageError(fmt::format("{} is no folder, but {} is one, expected two of them",
+                                   job.first, job.second));
+    }
+  } else {
+    settings.refuse_idle({"csv", "submission"}, "without folders");
   }
   FileChecks files(settings);
+  files.add_output(job.csv, "--csv", OutputKind::kTable);
+  if (!job.submission.folder.empty()) {
+    files.add_made_folder(job.submission.folder, "--output");
+  }
   check_common_files(job.common, files);
+}
+
+DisparityMap read_map(const EvalJob& job, const std::string& path, const GivenMapOptions& given,
+                      Execution& execution, std::vector<Remark>& remarks) {
+  return read_given_map(
+      path, given,
+      [&](int width, int height) { return job.cameras.camera(width, height, Side::kLeft).scale; },
+      execution, remarks);
 }
 
 /// 255 where all colours of an 8-bit image are 255. Masks often come with a palette, hence in
@@ -94,11 +156,15 @@ Mask read_mask(const std::string& path) {
   return mask;
 }
 
-std::vector<Row> judge_disparity(const EvalJob& job, RunReport& report) {
+std::vector<Row> judge_disparity(const EvalJob& job, Execution& execution, RunReport& report) {
+  GivenMapOptions truth = job.truth;
+  truth.depth_scale = job.given.depth_scale;
+  std::vector<Remark> remarks;
   const auto maps = report.timed_file_access("read", [&] {
-    return std::pair(read_disparity(job.first, job.disparity_scale.value_or(0)),
-                     read_disparity(job.second, job.truth_scale.value_or(0)));
+    return std::pair(read_map(job, job.first, job.given, execution, remarks),
+                     read_map(job, job.second, truth, execution, remarks));
   });
+  tell_remarks(remarks, job.common, report);
   DisparityEvaluationOptions options;
   options.ignore_border_px = job.ignore_border_px;
   Mask mask;
@@ -109,19 +175,65 @@ std::vector<Row> judge_disparity(const EvalJob& job, RunReport& report) {
   const DisparityScores scores = report.timed_compute("evaluate", [&] {
     return evaluate_disparity(maps.first.view(), maps.second.view(), options);
   });
-  return {{"pixels", "evaluated_pixels", static_cast<double>(scores.evaluated_pixels), ""},
-          {"valid", "valid_pixels", static_cast<double>(scores.valid_pixels), ""},
-          {"coverage", "coverage_percent", scores.coverage_percent, "%"},
-          {"bad 0.5", "bad_0_5_percent", scores.bad_0_5_percent, "%"},
-          {"bad 1", "bad_1_percent", scores.bad_1_percent, "%"},
-          {"bad 2", "bad_2_percent", scores.bad_2_percent, "%"},
-          {"bad 4", "bad_4_percent", scores.bad_4_percent, "%"},
-          {"average", "average_px", scores.average_px, "px"},
-          {"RMS", "rms_px", scores.rms_px, "px"},
-          {"A50", "a50_px", scores.a50_px, "px"},
-          {"A90", "a90_px", scores.a90_px, "px"},
-          {"A95", "a95_px", scores.a95_px, "px"},
-          {"A99", "a99_px", scores.a99_px, "px"}};
+  std::vector<Row> rows = {
+      {"pixels", "evaluated_pixels", static_cast<double>(scores.evaluated_pixels), ""},
+      {"valid", "valid_pixels", static_cast<double>(scores.valid_pixels), ""}};
+  for (const ScoreColumn& column : kScoreColumns) {
+    rows.push_back({column.label, column.key, scores.*column.value, column.unit});
+  }
+  return rows;
+}
+
+/// Scores of a folder of maps, and files for a server.
+void judge_folder(const EvalJob& job, Execution& execution, RunReport& report) {
+  const BenchmarkFolder folder = read_benchmark_folder(job.second);
+  std::vector<Remark> remarks;
+  std::vector<std::string> missing;
+  for (const BenchmarkScene& scene : folder.scenes) {
+    if (!find_benchmark_map(job.first, scene.name)) {
+      missing.push_back(scene.name);
+    }
+  }
+  if (missing.size() == folder.scenes.size()) {
+    throw Error(fmt::format("{}: holds no map of {}, expected files such as {}.pfm", job.first,
+                            job.second, missing.front()));
+  }
+  if (!missing.empty()) {
+    remarks.push_back({Remark::Kind::kWarning, "missing",
+                       fmt::format("{} of {} maps are missing in {}: {}", missing.size(),
+                                   folder.scenes.size(), job.first, fmt::join(missing, ", "))});
+  }
+  const auto read = [&](std::vector<Remark>& found) -> ReadSceneMap {
+    return [&](const std::string& scene) -> std::optional<SceneMap> {
+      const auto file = find_benchmark_map(job.first, scene);
+      return file ? std::optional(SceneMap{
+                        read_map(job, file->string(), job.given, execution, found), file->string()})
+                  : std::nullopt;
+    };
+  };
+  const std::vector<ScoreRow> rows = report.timed_compute("evaluate", [&] {
+    return score_folder(folder, read(remarks), job.truth.disparity_scale.value_or(0),
+                        job.ignore_border_px);
+  });
+  if (rows.empty() && !job.submission.kind) {
+    throw Error(fmt::format("{}: is a test set without truth, expected --submission", job.second));
+  }
+  tell_remarks(remarks, job.common, report);
+  if (!rows.empty()) {
+    fmt::print("{}", score_table(rows));
+  }
+  report.set_results({{"scores", score_values(rows)}, {"missing", missing}});
+  if (!job.csv.empty()) {
+    write_text_file(job.csv, score_csv(rows));
+  }
+  if (job.submission.kind) {
+    std::vector<Remark> told;
+    const std::string line = report.timed_file_access(
+        "write", [&] { return write_submission(job.submission, job.second, folder, read(told)); });
+    if (!job.common.quiet) {
+      tell("eval: {}\n", line);
+    }
+  }
 }
 
 std::vector<Row> judge_view(const EvalJob& job, Execution& execution, RunReport& report) {
@@ -147,14 +259,14 @@ SettingValue results_of(const std::vector<Row>& rows) {
   SettingValue results = SettingValue::object();
   for (const Row& row : rows) {
     // JSON has no infinity and no NaN: null, as the library writes them.
-    results[row.key] = row.value;
+    results[std::string(row.key)] = row.value;
   }
   return results;
 }
 
 void print_table(const std::vector<Row>& rows) {
   for (const Row& row : rows) {
-    const bool is_count = *row.unit == '\0' && std::abs(row.value) > 1;
+    const bool is_count = row.unit.empty() && std::abs(row.value) > 1;
     fmt::print("{:<18} {:>12} {}\n", row.label,
                std::isnan(row.value) ? "-" : fmt::format("{:.{}f}", row.value, is_count ? 0 : 3),
                row.unit);
@@ -165,15 +277,18 @@ void print_table(const std::vector<Row>& rows) {
 
 int command_eval(const Arguments& arguments) {
   EvalJob job;
-  Settings settings("eval",
-                    "Compares a disparity map or, with --views, a photograph with the truth.");
+  Settings settings(
+      "eval",
+      "Compares a disparity map, a folder of maps or, with --views, a photograph with the "
+      "truth.");
   add_eval_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(
-      {"disparity", "truth", "views", "scale", "disparity-scale", "mask", "ignore-border", "report",
-       "quiet"},
+      {"disparity", "truth", "views", "scale", "disparity-scale", "given", "mask", "ignore-border",
+       "csv", "submission", "output", "report", "quiet"},
       {"vantage eval disparity.pfm truth.pfm", "vantage eval disparity.pfm truth.png --scale 4",
+       "vantage eval maps kitti/training --csv kitti.csv",
        "vantage eval --views view.png photograph.png"});
   if (!read_command_line(settings, arguments)) {
     return kExitDone;
@@ -182,10 +297,14 @@ int command_eval(const Arguments& arguments) {
   CommandWork work(settings, job.common);
   RunReport& report = work.report;
   Execution& execution = work.execution;
-  const std::vector<Row> rows =
-      job.views ? judge_view(job, execution, report) : judge_disparity(job, report);
-  print_table(rows);
-  report.set_results(results_of(rows));
+  if (job.has_folders()) {
+    judge_folder(job, execution, report);
+  } else {
+    const std::vector<Row> rows =
+        job.views ? judge_view(job, execution, report) : judge_disparity(job, execution, report);
+    print_table(rows);
+    report.set_results(results_of(rows));
+  }
   report.write(job.common.report);
   return kExitDone;
 }

@@ -23,6 +23,7 @@ void require_equal_size(const char* what, int width, int height, ImageView<const
 struct Errors {
   std::vector<double> valid;
   std::int64_t evaluated = 0;
+  std::int64_t outliers = 0;  // of KITTI 2015, among the valid pixels
 };
 
 Errors collect_errors(ImageView<const float> disparity, ImageView<const float> truth,
@@ -38,7 +39,9 @@ Errors collect_errors(ImageView<const float> disparity, ImageView<const float> t
       ++errors.evaluated;
       const double estimate = disparity.at(x, y);
       if (std::isfinite(estimate)) {
-        errors.valid.push_back(std::abs(estimate - expected));
+        const double error = std::abs(estimate - expected);
+        errors.valid.push_back(error);
+        errors.outliers += error > 3 && error > 0.05 * std::abs(expected) ? 1 : 0;
       }
     }
   }
@@ -83,7 +86,9 @@ DisparityScores evaluate_disparity(ImageView<const float> disparity, ImageView<c
   scores.bad_0_5_percent = bad_percent(0.5);
   scores.bad_1_percent = bad_percent(1);
   scores.bad_2_percent = bad_percent(2);
+  scores.bad_3_percent = bad_percent(3);
   scores.bad_4_percent = bad_percent(4);
+  scores.d1_percent = 100 * (evaluated - valid + static_cast<double>(errors.outliers)) / evaluated;
 
   if (errors.valid.empty()) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();

@@ -28,7 +28,10 @@ struct DisparityScores {
   double bad_0_5_percent = 0;
   double bad_1_percent = 0;
   double bad_2_percent = 0;
+  double bad_3_percent = 0;
   double bad_4_percent = 0;
+  /// KITTI 2015: those with an error above 3 px and above 5 % of the truth.
+  double d1_percent = 0;
 
   // Over the valid pixels only, in pixels; NaN when there is none.
   double average_px = 0;  ///< mean |error|

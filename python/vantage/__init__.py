@@ -439,12 +439,19 @@ def write_image(path: _Path, image: _Image, *, bgr: bool = False) -> None:
     _vantage.write_image(path, image, bool(bgr))
 
 
-def read_disparity(path: _Path, scale: float = 0.0) -> NDArray[np.float32]:
+def read_disparity(path: _Path, scale: float = 0.0, calibration: _Rig = None, *,
+                   given: Literal["disparity", "depth"] = "disparity",
+                   **options: Any) -> NDArray[np.float32]:
     """Reads a disparity map (PFM, PNG, TIFF, EXR, NPY): float32, NaN where it is unknown.
 
-    scale divides the values of integer files; 0: 256 for 16-bit PNG.
+    scale divides the values of integer files; 0: 256 for 16-bit PNG. 16 is the scale of OpenCV's
+    maps, whose (minDisparity - 1) is unknown. given="depth": the file holds depths, scale is their
+    number per metre (0: 1000 for integers, 1 for floats), and the cameras turn them into
+    disparities: calibration, or options as of depth() but max_depth. What was assumed is a warning.
+    Raises Error for files that cannot be read.
     """
-    return _vantage.read_disparity(path, float(scale))
+    return _vantage.read_disparity(path, float(scale), _calibration_of(calibration),
+                                   {"given": given, **options})
 
 
 def write_disparity(path: _Path, disparity: _Map) -> None:
