@@ -166,7 +166,7 @@ TEST_F(SequenceRunnerTest, OutputsGoToFoldersOfTheirOwn) {
                    SequenceOutput::kRightUnmatched};
   options_.views = {ViewPath::fixed(BaselinePosition{0.25, 0}),
                     ViewPath::fixed(BaselinePosition{-1, 0}), parse_view_path("0=0,9=1")};
-  options_.stereo_packing = StereoPacking{.above_below = true};
+  options_.stereo_packing = StereoPacking{.layout = StereoLayout::kAboveBelow};
   MadeUpPairs pairs(1);
   run(pairs, folder("a"));
   EXPECT_THAT(names(folder("a")),
