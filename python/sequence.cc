@@ -293,8 +293,8 @@ class Sequence {
     complete_sequence(job, false);
     require_outputs_of_frames(job.sequence);
     check_sequence(job, settings);
-    if (job.input.stereo == "-") {
-      throw UsageError("stereo is -, expected a file: 'vantage run' reads standard input");
+    if (job.input.is_stream()) {
+      throw UsageError("the input is a stream, expected files: 'vantage run' reads streams");
     }
     on_threads_of(*opened_->execution, [&] { open(calibration, *opened_); });
   }

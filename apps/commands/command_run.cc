@@ -66,7 +66,7 @@ std::string finish_if_whole(const RunJob& job, const RunSession& session,
                             RunJournal& journal, RunReport& report) {
   const bool has_report = job.sequence.saves(SequenceOutput::kComfort);
   // A stream is never continued.
-  const bool is_unfinished = sequence.interrupted && !reads_stream(job);
+  const bool is_unfinished = sequence.interrupted && !job.input.is_stream();
   if (job.shard || is_unfinished || (!layout.has_videos() && !has_report)) {
     return "";
   }
@@ -137,7 +137,7 @@ int command_run(const Arguments& arguments) {
                      RunSession::part_name(job));
   const std::atomic<bool>& interrupted = interrupt_flag();
   std::optional<ShotTable> shots;
-  if (job.sequence.needs_shots() && !reads_stream(job)) {
+  if (job.sequence.needs_shots() && !job.input.is_stream()) {
     shots = find_shots(job, session, layout, execution, report);
     if (!shots) {
       if (!job.common.quiet) {

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/io/files/encoded_text.h"
 #include "engine/io/files/json_text.h"
+#include "engine/io/video/stream_input.h"
 #include "engine/options/match_settings.h"
 #include "engine/sequence/journal/run_journal.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -70,8 +71,8 @@ std::string sources_of(const RunJob& job, const Settings& settings) {
   SettingValue sources = {{kKeepGoing, job.keep_going}};
   for (const char* name : kSources) {
     const auto stored = [](const SettingValue& path) {
-      return path == "-"
-                 ? path  // standard input
+      return is_stream_name(path.get<std::string>())
+                 ? path
                  : SettingValue(stored_name(fs::absolute(path.get<std::string>()).string()));
     };
     if (values[name].is_string()) {

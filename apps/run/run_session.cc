@@ -22,6 +22,7 @@
 #include "engine/jobs/list_columns.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/options/frame_step_setting.h"
+#include "engine/sequence/film_remark.h"
 #include "engine/sequence/journal/delivered_frames.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/pairs/sequence_range.h"
@@ -141,7 +142,7 @@ AppliedTuning find_tuning(const RunJob& job, const FramePair& first, const Setti
 }
 
 std::string counted_frames(const RunJob& job, int frame_count) {
-  if (reads_stream(job)) {
+  if (job.input.is_stream()) {
     return "a stream of pairs";
   }
   return job.sequence.baselines.size() < 2 ? fmt::format("{} pairs", frame_count)
@@ -205,7 +206,7 @@ std::string RunSession::part_name(const RunJob& job) {
 RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   FileChecks files = check_files(job, settings);
   RunSession session;
-  if (reads_stream(job)) {
+  if (job.input.is_stream()) {
     job.input.stop = &interrupt_flag();
   }
   open_source(job, session);
@@ -267,6 +268,14 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   job.sequence.validate();
   job.sequence.frame_rate =
       job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
+  const FilmFormat film = session.pairs->film_format();
+  job.sequence.film = film;
+  if (session.rectifier && job.sequence.unrectified != UnrectifiedSearch::kOnPhotographs) {
+    job.sequence.film.pixel_aspect = {};
+  }
+  if (const auto remark = film_remark(film, job.sequence, writes_stream(job))) {
+    tell_remarks({{*remark}}, job.common, report);
+  }
   session.identity = identity_of(job, settings, session);
   session.tuning = find_tuning(job, first, settings);
   session.execution = with_tuned(job.common.execution, session.tuning.settings);

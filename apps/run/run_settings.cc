@@ -147,7 +147,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
 
 void complete(RunJob& job, const Settings& settings) {
   read_pose_files(job.views, read_toml_document);
-  complete_sequence(job, reads_stream(job) || writes_stream(job));
+  complete_sequence(job, job.input.is_stream() || writes_stream(job));
   refuse_combinations(CombinationScope::kRun, values_of(job, settings));
   check_stream(job);
   job.input.raw_rate = job.frame_rate.value_or(FrameRate());

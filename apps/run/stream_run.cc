@@ -21,8 +21,6 @@ constexpr const char* kStream = "-";
 
 }  // namespace
 
-bool reads_stream(const RunJob& job) { return job.input.stereo == kStream; }
-
 bool writes_stream(const RunJob& job) { return job.output == kStream; }
 
 void check_stream(const RunJob& job) {
@@ -54,11 +52,13 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
         "the times\n",
         to_string(job.sequence.frame_rate));
   }
-  StreamedVideoWriter writer(stdout, job.stream_format, job.sequence.frame_rate);
+  const SequenceLayout layout(job.output, job.sequence);
+  StreamedVideoWriter writer(stdout, job.stream_format, job.sequence.frame_rate,
+                             film_format_of(layout.streams().front().output, job.sequence.film));
   SequenceReport sequence;
   {
     Progress progress("run", "frames",
-                      reads_stream(job) ? ProgressStyle::kNone : job.shown_progress());
+                      job.input.is_stream() ? ProgressStyle::kNone : job.shown_progress());
     SequenceRun run = session.run(job, *session.pairs, nullptr, session.memory.in_flight);
     run.frame_size = session.shape.source;
     run.stop = &interrupt_flag();

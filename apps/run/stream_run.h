@@ -6,8 +6,6 @@
 
 namespace vantage::apps {
 
-/// Whether the run reads standard input ("-").
-bool reads_stream(const RunJob& job);
 /// Whether the run writes standard output ("-").
 bool writes_stream(const RunJob& job);
 

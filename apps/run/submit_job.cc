@@ -45,7 +45,9 @@ void check(const SubmitJob& job) {
   };
   refuse_if(job.run.shard.has_value(), "shard",
             "each task has its own; --shards is the number of tasks");
-  refuse_if(reads_stream(job.run), "stereo -", "tasks read files, expected one");
+  if (job.run.input.is_stream()) {
+    throw UsageError("a stream cannot be submitted: tasks read files, expected one");
+  }
   refuse_if(writes_stream(job.run), "output -", "tasks write a folder, expected one");
   refuse_if(job.run.dry_run, "dry-run", "'vantage run' prints the plan, --no-submit the scripts");
   refuse_if(!job.run.common.report.empty(), "report",

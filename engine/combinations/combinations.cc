@@ -125,6 +125,9 @@ std::string Condition::text() const {
   if (option.starts_with(kColumn)) {
     return fmt::format("a list of pairs with the {}", option);
   }
+  if (option == "stream") {
+    return "a stream as input";
+  }
   const std::string operand = word.empty() ? fmt::format("{}", number) : word;
   switch (test) {
     case Test::kGiven:

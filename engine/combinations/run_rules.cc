@@ -145,22 +145,23 @@ constexpr Rule kRunRules[] = {
      "cloud-gradient-limit | poses",
      "unless save cloud | save mesh", "no effect where --save has no cloud, mesh"},
     {kRun, "preview-range", "unless save preview", "no effect where --save has no preview"},
-    // Standard input and output are there once.
-    {kRun, "resume | force", "stereo = -",
-     "--{option} is given, but the input is standard input, which cannot be read again; "
-     "--overwrite starts again"},
-    {kRun, "shard", "stereo = -",
-     "--shard is given and --stereo is -, expected a file: standard input is read once"},
+    // Streams are there once.
+    {kRun, "resume | force", "stream",
+     "--{option} is given, but the input is a stream, which cannot be read again; --overwrite "
+     "starts again"},
+    {kRun, "shard", "stream",
+     "--shard is given and the input is a stream, expected a file: a stream is read once"},
     {kRun, "search-range = shot | preview-range = shot | depth-range = shot | intensity-fit = shot",
-     "stereo = -",
-     "--{option} is shot and --stereo is -, expected another value: it needs all frames of a shot "
+     "stream",
+     "--{option} is shot and the input is a stream, expected another value: it needs all frames of "
+     "a shot "
      "before the first; store the stream in a file"},
     {kRun, "resume | force | shard", "live",
      "--{option} cannot be used with --live: what was dropped does not come again"},
     {kRun, "video | save depth-video", "live",
      "--{option} cannot be used with --live: a video of fewer frames would run too fast; pipe -o - "
      "to ffmpeg with -use_wallclock_as_timestamps 1"},
-    {kRun, "raw-video", "unless stereo = -", "no effect without --stereo -"},
+    {kRun, "raw-video", "unless stream", "no effect without a stream as input, such as --stereo -"},
     {kRun, "stream-format", "unless output = -", "no effect without --output -"},
     {kRun,
      "resume | overwrite | force | shard | video | crf | no-sound | depth-codec | "

@@ -270,6 +270,9 @@ OptionValues values_of(const SequenceJob& job, const Settings& settings) {
       values.set(option, *file);
     }
   }
+  if (job.input.is_stream()) {
+    values.set("stream", "given");
+  }
   // A list of pairs may have them; checked when it has been read.
   if (!job.input.pairs.empty() && job.cameras_file().empty() && !job.rig.replaces_calibration()) {
     values.set("column calibration", "possible");

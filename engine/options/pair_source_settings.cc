@@ -16,8 +16,9 @@ constexpr int kMaxSide_px = 65535;
 void add_raw_video_setting(Settings& settings, std::optional<RawVideoShape>& shape) {
   Setting& setting =
       settings.add("raw-video", "WxH[:FORMAT]",
-                   "Standard input is rawvideo of this size, in one of FFmpeg's pixel formats "
-                   "(default rgb24), with the frame rate of --fps; none: y4m");
+                   "Streams are rawvideo of this size, in one of FFmpeg's pixel formats (default "
+                   "rgb24), with the frame rate of --fps; of a camera its mode; none: y4m, or a "
+                   "container that can be streamed");
   setting.set = [&shape](const SettingValue& value) {
     const std::string text = to_text(value);
     if (text == "none") {
@@ -49,11 +50,12 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
         .changes_results = false;
   };
   path("left", input.left, "SOURCE",
-       "Left frames: a folder, pattern (left/%06d.png), glob or video");
+       "Left frames: a folder, pattern (left/%06d.png), glob, video or stream (see --stereo)");
   path("right", input.right, "SOURCE", "Right frames");
   settings.integer("offset", input.offset_frames, "N", "Pair left frame i with right frame i + N");
   path("stereo", input.stereo, "SOURCE",
-       "Frames with both images, see --packing; -: y4m on standard input");
+       "Frames with both images, see --packing; a stream: - (standard input), a named pipe, "
+       "/dev/videoN, tcp://, udp://, rtsp:// or http://");
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),
       "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "

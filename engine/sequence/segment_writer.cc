@@ -81,11 +81,14 @@ void SegmentWriter::begin(FrameRange frames) {
 void SegmentWriter::write(Stream& stream, const Photograph& picture, int times) {
   try {
     if (!stream.writer) {
+      const SequenceOutput output = stream.output->output;
+      const FilmFormat format = film_format_of(output, options_.film);
       stream.writer = std::make_unique<VideoWriter>(
           layout_.segment(*stream.output, frames_), picture.width(), picture.height(),
           VideoEncoding{options_.frame_rate, options_.crf,
-                        stream.output->output == SequenceOutput::kDepthVideo ? options_.depth_coding
-                                                                             : VideoCoding::kH264});
+                        output == SequenceOutput::kDepthVideo ? options_.depth_coding
+                                                              : colour_coding(format.colours.bits),
+                        format});
     }
     for (int i = 0; i < times; ++i) {
       stream.writer->write(picture);

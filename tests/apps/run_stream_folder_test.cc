@@ -86,7 +86,7 @@ TEST_F(RunStreamFolders, AreAsOfAFile) {
   EXPECT_EQ(stream(out_, joined(kFilmOutputs, {"--overwrite"})), 0) << err();
   // Without a stream there is nothing to continue.
   expect_failure(run_vantage({"run", "-o", out_, "--resume"}), 2,
-                 "standard input, which cannot be read again");
+                 "a stream, which cannot be read again");
 }
 
 TEST_F(RunStreamFolders, TakePartsAndStateAsOfAFile) {

@@ -109,7 +109,7 @@ TEST_F(RunStreams, StreamsThatEndEarly) {
   EXPECT_EQ(shell(command({"--stereo", "-", "--packing", "sbsl", "--save", "preview", "-o", "-"}) +
                   " <" + (folder_ / "text.y4m") + " >" + (folder_ / "out.raw")),
             1);
-  EXPECT_THAT(err(), HasSubstr("standard input: is empty or no y4m video"));
+  EXPECT_THAT(err(), HasSubstr("standard input: is empty or no video that can be streamed"));
   // Nobody reads any longer.
   write_file(folder_ / "pairs.rgb", raw_pairs(kFrames));
   EXPECT_EQ(shell("{ " + command(depth_) + " <" + (folder_ / "pairs.rgb") + "; echo $? >" +
@@ -127,9 +127,9 @@ TEST_F(RunStreams, WrongOptions) {
     return joined({"--left", left_, "--right", right_, "-o", "-", "--save", "preview"}, more);
   };
   const std::vector<Refusal> refusals = {
-      {from_input({"--resume"}), "standard input, which cannot be read again"},
-      {from_input({"--force"}), "standard input, which cannot be read again"},
-      {from_input({"--shard", "1/2"}), "standard input is read once"},
+      {from_input({"--resume"}), "a stream, which cannot be read again"},
+      {from_input({"--force"}), "a stream, which cannot be read again"},
+      {from_input({"--shard", "1/2"}), "a stream is read once"},
       {from_input({"--save", "comfort", "--search-range", "shot"}), "search-range is shot"},
       {from_input({"--save", "depth-video", "--depth-range", "shot"}), "depth-range is shot"},
       {from_input({"--save", "preview", "--preview-range", "shot"}), "preview-range is shot"},

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <new>
 #include <type_traits>
 
 #include "engine/error.h"
 #include "engine/io/video/libav_scaler.h"
+#include "engine/io/video/stated_format.h"
 
 extern "C" {
 #include <libavutil/frame.h>
@@ -81,50 +83,61 @@ class GreyToFrame {
   LibavFrame frame_;
 };
 
-/// 8-bit value from any depth, rounded.
-template <typename T>
-std::uint8_t to_byte(T value) {
-  if constexpr (std::is_same_v<T, std::uint8_t>) {
+/// Value of 8 or 16 bits from any depth, rounded.
+template <typename Sample, typename T>
+Sample to_sample(T value) {
+  constexpr unsigned kWhite = std::numeric_limits<Sample>::max();
+  if constexpr (std::is_same_v<T, Sample>) {
     return value;
+  } else if constexpr (std::is_same_v<T, std::uint8_t>) {
+    return static_cast<Sample>(value * 257U);
   } else if constexpr (std::is_same_v<T, std::uint16_t>) {
-    return static_cast<std::uint8_t>((value * 255U + 32767U) / 65535U);
+    return static_cast<Sample>((value * 255U + 32767U) / 65535U);
   } else {
-    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+    return static_cast<Sample>(
+        std::lround(static_cast<float>(kWhite) * std::clamp(value, 0.0F, 1.0F)));
   }
 }
 
 /// Fills `rgb`, which may be a column and a row larger than the image: those repeat the last.
-template <typename T>
+template <typename Sample, typename T>
 void fill_rgb(const Image<T>& image, AVFrame& rgb) {
   const int channels = image.channels();
   const int green = channels >= 3 ? 1 : 0;
   const int blue = channels >= 3 ? 2 : 0;
   for (int y = 0; y < rgb.height; ++y) {
     const T* source = image.row(std::min(y, image.height() - 1));
-    std::uint8_t* target = rgb.data[0] + std::ptrdiff_t{y} * rgb.linesize[0];
+    auto* target = reinterpret_cast<Sample*>(rgb.data[0] + std::ptrdiff_t{y} * rgb.linesize[0]);
     for (int x = 0; x < rgb.width; ++x) {
       const T* pixel = source + std::min(x, image.width() - 1) * channels;
-      target[3 * x] = to_byte(pixel[0]);
-      target[3 * x + 1] = to_byte(pixel[green]);
-      target[3 * x + 2] = to_byte(pixel[blue]);
+      target[3 * x] = to_sample<Sample>(pixel[0]);
+      target[3 * x + 1] = to_sample<Sample>(pixel[green]);
+      target[3 * x + 2] = to_sample<Sample>(pixel[blue]);
     }
   }
 }
 
+/// `Sample`: of R, G and B.
+template <typename Sample>
 class PhotographToFrame {
  public:
-  PhotographToFrame(int width, int height) : width_(even(width)), height_(even(height)) {
-    rgb_ = make_picture(width_, height_, AV_PIX_FMT_RGB24);
-    yuv_ = make_picture(width_, height_, AV_PIX_FMT_YUV420P);
-    yuv_->colorspace = AVCOL_SPC_BT709;
-    yuv_->color_range = AVCOL_RANGE_MPEG;
+  PhotographToFrame(const VideoCodingTraits& coding, int width, int height,
+                    const FilmColours& source)
+      : width_(even(width)), height_(even(height)) {
+    constexpr auto kRgb = sizeof(Sample) == 1 ? AV_PIX_FMT_RGB24 : AV_PIX_FMT_RGB48;
+    const FilmColours colours = written_colours(source);
+    rgb_ = make_picture(width_, height_, kRgb);
+    yuv_ = make_picture(width_, height_, coding.pixel_format);
+    yuv_->colorspace = static_cast<AVColorSpace>(colours.matrix);
+    yuv_->color_range = colours.has_full_range ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
     yuv_->chroma_location = AVCHROMA_LOC_LEFT;
     scaler_ = make_scaler(
         {.width = width_,
          .height = height_,
-         .source_format = AV_PIX_FMT_RGB24,
-         .target_format = AV_PIX_FMT_YUV420P,
-         .target_full_range = false,
+         .source_format = kRgb,
+         .target_format = coding.pixel_format,
+         .target_full_range = colours.has_full_range,
+         .matrix = colours.matrix,  // libswscale's numbers are the same
          .target_chroma = chroma_position(AVCHROMA_LOC_LEFT, describe_pixel_format(yuv_->format))});
   }
 
@@ -132,15 +145,17 @@ class PhotographToFrame {
     if (av_frame_make_writable(yuv_.get()) < 0) {
       throw std::bad_alloc();
     }
-    const auto* bytes = std::get_if<Image<std::uint8_t>>(&photograph.pixels);
-    if (bytes != nullptr && bytes->channels() == 3 && bytes->width() == width_ &&
-        bytes->height() == height_) {
-      const std::array<const std::uint8_t*, 4> rgb = {bytes->row(0)};
-      const std::array<int, 4> pitch = {static_cast<int>(bytes->view().stride())};
+    const auto* samples = std::get_if<Image<Sample>>(&photograph.pixels);
+    if (samples != nullptr && samples->channels() == 3 && samples->width() == width_ &&
+        samples->height() == height_) {
+      const std::array<const std::uint8_t*, 4> rgb = {
+          reinterpret_cast<const std::uint8_t*>(samples->row(0))};
+      const std::array<int, 4> pitch = {
+          static_cast<int>(samples->view().stride() * static_cast<std::ptrdiff_t>(sizeof(Sample)))};
       sws_scale(scaler_.get(), rgb.data(), pitch.data(), 0, height_, yuv_->data, yuv_->linesize);
       return *yuv_;
     }
-    std::visit([&](const auto& image) { fill_rgb(image, *rgb_); }, photograph.pixels);
+    std::visit([&](const auto& image) { fill_rgb<Sample>(image, *rgb_); }, photograph.pixels);
     sws_scale(scaler_.get(), rgb_->data, rgb_->linesize, 0, height_, yuv_->data, yuv_->linesize);
     return *yuv_;
   }
@@ -155,12 +170,19 @@ class PhotographToFrame {
 
 }  // namespace
 
-FrameConversion make_frame_conversion(VideoCoding coding, int width, int height) {
+FrameConversion make_frame_conversion(VideoCoding coding, int width, int height,
+                                      const FilmColours& source) {
   const auto calls = [](auto conversion) -> FrameConversion {
     return [conversion](const Photograph& frame) -> AVFrame& { return conversion->convert(frame); };
   };
-  return is_grey(coding) ? calls(std::make_shared<GreyToFrame>(traits_of(coding), width, height))
-                         : calls(std::make_shared<PhotographToFrame>(width, height));
+  const VideoCodingTraits& traits = traits_of(coding);
+  if (is_grey(coding)) {
+    return calls(std::make_shared<GreyToFrame>(traits, width, height));
+  }
+  return traits.bits > 8 ? calls(std::make_shared<PhotographToFrame<std::uint16_t>>(traits, width,
+                                                                                    height, source))
+                         : calls(std::make_shared<PhotographToFrame<std::uint8_t>>(traits, width,
+                                                                                   height, source));
 }
 
 }  // namespace vantage

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "engine/image/photograph.h"
+#include "engine/io/video/film_format.h"
 #include "engine/io/video/libav.h"
 #include "engine/io/video/video_coding.h"
 
@@ -12,9 +13,11 @@ namespace vantage {
 using FrameConversion = std::function<AVFrame&(const Photograph&)>;
 
 /// For the encoder of `coding` and photographs of that size. An odd last column or row is repeated
-/// unless the coding has odd sizes. Colours become BT.709 with limited range, chroma sampled at the
-/// left, as in H.264, without alpha. Grey codings take one channel of 16 bits, else they throw
-/// Error; of 10 bits, 0 stays 0 and 1..65535 become 1..1023, rounded.
-FrameConversion make_frame_conversion(VideoCoding coding, int width, int height);
+/// unless the coding has odd sizes. Colours get the matrix and the range of written_colours() of
+/// `source`, by default BT.709 with limited range; chroma is sampled at the left, without alpha.
+/// Grey codings take one channel of 16 bits, else they throw Error; of 10 bits, 0 stays 0
+/// and 1..65535 become 1..1023, rounded.
+FrameConversion make_frame_conversion(VideoCoding coding, int width, int height,
+                                      const FilmColours& source = {});
 
 }  // namespace vantage

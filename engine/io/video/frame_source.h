@@ -8,6 +8,7 @@
 
 #include "engine/image/photograph.h"
 #include "engine/image/photograph_reading.h"
+#include "engine/io/video/film_format.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/video_picture.h"
 
@@ -69,6 +70,9 @@ class FrameSource {
 
   /// Times of all frames of a video of variable rate; else empty.
   [[nodiscard]] virtual std::optional<FrameTimes> frame_times() const { return std::nullopt; }
+
+  /// Of a film as it states it; of image files the default.
+  [[nodiscard]] virtual FilmFormat film_format() const { return {}; }
 
   /// The video file, which may hold sound; empty for image files.
   [[nodiscard]] virtual std::filesystem::path video_file() const { return {}; }

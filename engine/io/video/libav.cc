@@ -29,11 +29,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kWithoutThem = "cannot read or write videos";
 
-/// Demultiplexers of containers and of raw streams with frames of one video.
-constexpr const char* kContainers =
-    "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,av1,obu,ivf,"
-    "vc1,mjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
-
 void check_is_video_file(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
@@ -152,7 +147,7 @@ LibavInput open_media_file(const fs::path& path) {
   if (opened == nullptr) {
     throw std::bad_alloc();
   }
-  opened->format_whitelist = av_strdup(kContainers);
+  opened->format_whitelist = av_strdup(kVideoContainers);
   opened->protocol_whitelist = av_strdup("file");
   // "file:" keeps names with a colon from being parsed as URLs. On failure `opened` is freed.
   const std::string address = "file:" + path.string();

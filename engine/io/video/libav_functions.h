@@ -48,6 +48,7 @@ class LibavFunctions {
   VANTAGE_LATE_FUNCTION(format_, avio_context_free);
   VANTAGE_LATE_FUNCTION(format_, avio_feof);
   VANTAGE_LATE_FUNCTION(format_, avio_open);
+  VANTAGE_LATE_FUNCTION(format_, avio_open2);
 
   VANTAGE_LATE_FUNCTION(codec_, av_packet_alloc);
   VANTAGE_LATE_FUNCTION(codec_, av_packet_free);

@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <new>
+#include <string_view>
 #include <utility>
 
 #include "engine/error.h"
@@ -15,6 +15,9 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/libav_functions.h"
+#include "engine/io/video/libav_scaler.h"
+#include "engine/io/video/stated_format.h"
+#include "engine/io/video/video_decoder.h"
 #include "scheduler/interruption.h"
 
 extern "C" {
@@ -27,71 +30,41 @@ extern "C" {
 namespace vantage {
 namespace {
 
-constexpr const char* kStandardInput = "standard input";
-
-LibavInput open_stream(const StandardInput& bytes, const std::optional<RawVideoShape>& raw,
-                       FrameRate raw_rate) {
-  silence_libav();
-  const AVInputFormat* format = libav().av_find_input_format(raw ? "rawvideo" : "yuv4mpegpipe");
-  AVDictionary* options = nullptr;
-  if (raw) {
-    if (av_get_pix_fmt(raw->pixel_format.c_str()) == AV_PIX_FMT_NONE) {
-      throw UsageError(
-          fmt::format("raw-video has the pixel format '{}', expected one of FFmpeg's "
-                      "such as rgb24, gray, yuv420p",
-                      raw->pixel_format));
-    }
-    av_dict_set(&options, "video_size", fmt::format("{}x{}", raw->width_px, raw->height_px).c_str(),
-                0);
-    av_dict_set(&options, "pixel_format", raw->pixel_format.c_str(), 0);
-    av_dict_set(&options, "framerate", to_string(raw_rate).c_str(), 0);
-  }
-  AVFormatContext* opened = libav().avformat_alloc_context();
-  if (opened == nullptr) {
-    av_dict_free(&options);
-    throw std::bad_alloc();
-  }
-  opened->pb = bytes.io();
-  int result = libav().avformat_open_input(&opened, "", format, &options);
-  av_dict_free(&options);
-  LibavInput input(result < 0 ? nullptr : opened);
-  if (result >= 0) {
-    result = libav().avformat_find_stream_info(input.get(), nullptr);
-  }
-  if (bytes.is_stopped()) {
-    throw scheduler::Interrupted();
-  }
-  if (result < 0 || input->nb_streams == 0) {
-    throw Error(fmt::format("{}: is empty or no {} video", kStandardInput, raw ? "raw" : "y4m"));
-  }
-  return input;
+bool is_of_raw_frames(const AVFormatContext& input) {
+  const std::string_view name = input.iformat->name;
+  return name == "yuv4mpegpipe" || name == "rawvideo";
 }
 
 }  // namespace
 
-StreamedVideo::StreamedVideo(const std::optional<RawVideoShape>& raw, FrameRate raw_rate,
-                             const std::atomic<bool>* stop)
-    : bytes_(std::make_unique<StandardInput>(stop)),
-      input_(open_stream(*bytes_, raw, raw_rate)),
-      stream_(input_->streams[0]),
+StreamedVideo::StreamedVideo(std::unique_ptr<StreamInput> bytes,
+                             const std::optional<RawVideoShape>& raw, FrameRate raw_rate)
+    : bytes_(std::move(bytes)),
+      input_(bytes_->open(raw, raw_rate)),
+      stream_(find_video_stream(*input_)),
+      codec_(open_decoder(*stream_, 1, bytes_->shown_name())),
       packet_(make_libav_packet()),
-      frame_(make_libav_frame()) {
+      frame_(make_libav_frame()),
+      is_raw_(is_of_raw_frames(*input_)),
+      lossy_codec_(name_of_lossy_codec(*stream_)) {
   const AVCodecParameters& parameters = *stream_->codecpar;
-  FileBytes({}, kStandardInput).check_dimensions(parameters.width, parameters.height);
-  const AVCodec* decoder = libav().avcodec_find_decoder(parameters.codec_id);
-  codec_.reset(decoder == nullptr ? nullptr : libav().avcodec_alloc_context3(decoder));
-  if (codec_ == nullptr || libav().avcodec_parameters_to_context(codec_.get(), &parameters) < 0 ||
-      libav().avcodec_open2(codec_.get(), decoder, nullptr) < 0) {
-    throw Error(fmt::format("{}: its video cannot be decoded", kStandardInput));
-  }
-  const AVRational rate =
-      stream_->avg_frame_rate.num > 0 ? stream_->avg_frame_rate : stream_->r_frame_rate;
-  rate_ = parse_frame_rate(fmt::format("{}/{}", rate.num, rate.den)).value_or(FrameRate());
+  FileBytes({}, bytes_->shown_name()).check_dimensions(parameters.width, parameters.height);
+  read_only(*input_, *stream_);
   if (!decode_next(first_)) {
     if (bytes_->is_stopped()) {
       throw scheduler::Interrupted();
     }
-    throw Error(fmt::format("{}: is empty, expected a video", kStandardInput));
+    throw Error(fmt::format("{}: is empty, expected a video", bytes_->shown_name()));
+  }
+  format_ = stated_format(*stream_, frame_.get());
+  const AVRational rate = stream_->avg_frame_rate.num > 0 ? stream_->avg_frame_rate
+                          : stream_->r_frame_rate.num > 0 ? stream_->r_frame_rate
+                                                          : codec_->framerate;
+  const auto stated = parse_frame_rate(fmt::format("{}/{}", rate.num, rate.den));
+  rate_ = stated.value_or(raw_rate);
+  if (!stated) {
+    remarks_.push_back(fmt::format("{}: states no frame rate, taken as {}; `fps` gives another",
+                                   bytes_->shown_name(), to_string(rate_)));
   }
 }
 
@@ -100,47 +73,82 @@ void StreamedVideo::fail_cut() {
   throw Error(fmt::format("{}: the stream ends inside it or is damaged", describe(decoded_)));
 }
 
-bool StreamedVideo::decode_next(VideoPicture& picture) {
-  if (ended_) {
-    return false;
-  }
-  int result = libav().av_read_frame(input_.get(), packet_.get());
-  if (result == AVERROR_EOF) {
-    // The reader of y4m takes a part of a frame for the end, too.
-    const AVIOContext& io = *input_->pb;
-    if (frames_end_ >= 0 && io.pos - (io.buf_end - io.buf_ptr) > frames_end_) {
-      fail_cut();
-    }
-    ended_ = true;
-    return false;
-  }
-  frames_end_ = packet_->pos >= 0 ? packet_->pos + packet_->size : -1;
-  const bool is_whole = result >= 0 && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0;
-  if (!is_whole && bytes_->is_stopped()) {
-    libav().av_packet_unref(packet_.get());
-    ended_ = true;
-    return false;
-  }
-  if (is_whole) {
-    result = libav().avcodec_send_packet(codec_.get(), packet_.get());
-    if (result >= 0) {
-      result = libav().avcodec_receive_frame(codec_.get(), frame_.get());
-    }
-  }
-  libav().av_packet_unref(packet_.get());
-  if (!is_whole || result < 0) {
+void StreamedVideo::fail_damaged(int result) {
+  if (is_raw_) {
     fail_cut();
   }
-  picture = VideoPicture(*frame_, converters_, describe(decoded_));
-  ++decoded_;
-  return true;
+  waits_for_key_frame_ = true;
+  throw Error(fmt::format("{}: is damaged ({}), and what depends on it", describe(decoded_),
+                          libav_message(result)));
+}
+
+void StreamedVideo::feed() {
+  int result = 0;
+  do {
+    libav().av_packet_unref(packet_.get());
+    bytes_->allow_silence();
+    result = libav().av_read_frame(input_.get(), packet_.get());
+  } while (result >= 0 && packet_->stream_index != stream_->index);
+  const bool is_whole = result >= 0 && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0;
+  if (!is_whole && bytes_->is_stopped()) {
+    ended_ = true;
+    return;
+  }
+  if (result == AVERROR_EOF) {
+    // The reader of y4m takes a part of a frame for the end, too.
+    const AVIOContext* io = input_->pb;
+    if (is_raw_ && frames_end_ >= 0 && io->pos - (io->buf_end - io->buf_ptr) > frames_end_) {
+      fail_cut();
+    }
+    libav().avcodec_send_packet(codec_.get(), nullptr);
+    return;
+  }
+  if (result < 0 && !is_raw_) {
+    ended_ = true;
+    throw Error(
+        fmt::format("{}: cannot be read ({})", describe(decoded_), bytes_->problem(result)));
+  }
+  frames_end_ = packet_->pos >= 0 ? packet_->pos + packet_->size : -1;
+  if (!is_whole) {
+    fail_damaged(AVERROR_INVALIDDATA);
+  }
+  if (waits_for_key_frame_ && (packet_->flags & AV_PKT_FLAG_KEY) == 0) {
+    return;
+  }
+  waits_for_key_frame_ = false;
+  result = libav().avcodec_send_packet(codec_.get(), packet_.get());
+  if (result < 0) {
+    fail_damaged(result);
+  }
+}
+
+bool StreamedVideo::decode_next(VideoPicture& picture) {
+  while (!ended_) {
+    const int result = libav().avcodec_receive_frame(codec_.get(), frame_.get());
+    if (result == AVERROR(EAGAIN)) {
+      feed();
+      continue;
+    }
+    if (result == AVERROR_EOF) {
+      ended_ = true;
+      break;
+    }
+    if (result < 0 || frame_->decode_error_flags != 0 ||
+        (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
+      fail_damaged(result < 0 ? result : AVERROR_INVALIDDATA);
+    }
+    picture = VideoPicture(*frame_, converters_, describe(decoded_), lossy_codec_);
+    ++decoded_;
+    return true;
+  }
+  return false;
 }
 
 bool StreamedVideo::fetch(FetchedFrame& frame) {
   frame.file.clear();
   frame.picture = std::move(first_);
   frame.frames_missing = 0;
-  frame.remarks.clear();
+  frame.remarks = std::exchange(remarks_, {});
   return !frame.picture.is_empty() || decode_next(frame.picture);
 }
 
@@ -158,11 +166,12 @@ void StreamedVideo::skip_to(int index) {
 }
 
 std::string StreamedVideo::describe(int index) const {
-  return fmt::format("{} frame {}", kStandardInput, index);
+  return fmt::format("{} frame {}", bytes_->shown_name(), index);
 }
 
-StreamedVideoWriter::StreamedVideoWriter(std::FILE* stream, StreamFormat format, FrameRate rate)
-    : stream_(stream), format_(format), rate_(rate) {}
+StreamedVideoWriter::StreamedVideoWriter(std::FILE* stream, StreamFormat format, FrameRate rate,
+                                         const FilmFormat& film)
+    : stream_(stream), format_(format), rate_(rate), film_(film) {}
 
 void StreamedVideoWriter::put(const void* bytes, std::size_t count) {
   if (std::fwrite(bytes, 1, count, stream_) != count) {
@@ -171,9 +180,14 @@ void StreamedVideoWriter::put(const void* bytes, std::size_t count) {
 }
 
 void StreamedVideoWriter::put_header(const AVFrame& frame, bool is_grey) {
+  const bool has_10_bits = describe_pixel_format(frame.format).comp[0].depth == 10;
   const std::string header = fmt::format(
-      "YUV4MPEG2 W{} H{} F{}:{} Ip A1:1 C{}\n", frame.width, frame.height, rate_.numerator,
-      rate_.denominator, is_grey ? "mono16 XCOLORRANGE=FULL" : "420mpeg2 XCOLORRANGE=LIMITED");
+      "YUV4MPEG2 W{} H{} F{}:{} Ip A{}:{} C{} XCOLORRANGE={}\n", frame.width, frame.height,
+      rate_.numerator, rate_.denominator, film_.pixel_aspect.width, film_.pixel_aspect.height,
+      is_grey       ? "mono16"
+      : has_10_bits ? "420p10 XYSCSS=420P10"
+                    : "420mpeg2",
+      frame.color_range == AVCOL_RANGE_JPEG ? "FULL" : "LIMITED");
   put(header.data(), header.size());
   has_header_ = true;
 }
@@ -205,8 +219,9 @@ void StreamedVideoWriter::write(const Photograph& frame) {
     put_rgb(frame);
   } else {
     if (!convert_) {
-      convert_ = make_frame_conversion(is_grey ? VideoCoding::kFfv1_16 : VideoCoding::kH264,
-                                       frame.width(), frame.height());
+      convert_ =
+          make_frame_conversion(is_grey ? VideoCoding::kFfv1_16 : colour_coding(film_.colours.bits),
+                                frame.width(), frame.height(), film_.colours);
     }
     const AVFrame& converted = convert_(frame);
     if (format_ == StreamFormat::kY4m) {

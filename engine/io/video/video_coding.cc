@@ -52,7 +52,15 @@ constexpr std::array kCodings = {
                       .bits = 10,
                       .encoder = "prores_ks",
                       .pixel_format = AV_PIX_FMT_YUV422P10LE,
-                      .options = "profile=hq"}};
+                      .options = "profile=hq"},
+    VideoCodingTraits{.name = "hevc-colours-10",
+                      .extension = "mp4",
+                      .bits = 10,
+                      .encoder = "libx265",
+                      .pixel_format = AV_PIX_FMT_YUV420P10LE,
+                      .has_crf = true,
+                      .options = "preset=superfast,x265-params=log-level=none:pools=none:"
+                                 "frame-threads=1:bframes=0:open-gop=0:info=0"}};
 
 }  // namespace
 
@@ -64,7 +72,9 @@ const std::vector<std::pair<std::string_view, VideoCoding>>& grey_coding_names()
   static const auto kNames = [] {
     std::vector<std::pair<std::string_view, VideoCoding>> names;
     for (std::size_t i = 1; i < kCodings.size(); ++i) {
-      names.emplace_back(kCodings[i].name, static_cast<VideoCoding>(i));
+      if (is_grey(static_cast<VideoCoding>(i))) {
+        names.emplace_back(kCodings[i].name, static_cast<VideoCoding>(i));
+      }
     }
     return names;
   }();

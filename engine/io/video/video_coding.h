@@ -8,11 +8,12 @@ namespace vantage {
 
 /// How videos are coded, and in which container.
 enum class VideoCoding {
-  kH264,      ///< colours, yuv420p, MP4
-  kFfv1_16,   ///< grey, 16 bits, lossless, Matroska
-  kFfv1_10,   ///< grey, 10 bits, lossless, Matroska
-  kHevc_10,   ///< grey, 10 bits, lossy, MP4
-  kProRes_10  ///< grey as the luma of 4:2:2 video with 10 bits, lossy, MOV
+  kH264,           ///< colours, yuv420p, MP4
+  kFfv1_16,        ///< grey, 16 bits, lossless, Matroska
+  kFfv1_10,        ///< grey, 10 bits, lossless, Matroska
+  kHevc_10,        ///< grey, 10 bits, lossy, MP4
+  kProRes_10,      ///< grey as the luma of 4:2:2 video with 10 bits, lossy, MOV
+  kHevcColours_10  ///< colours, yuv420p10 (Main 10), MP4
 };
 
 /// What a coding is: a line of the table in the .cc file, where another one is added.
@@ -34,6 +35,12 @@ struct VideoCodingTraits {
 const VideoCodingTraits& traits_of(VideoCoding coding);
 /// The grey ones by name.
 const std::vector<std::pair<std::string_view, VideoCoding>>& grey_coding_names();
-constexpr bool is_grey(VideoCoding coding) { return coding != VideoCoding::kH264; }
+constexpr bool is_grey(VideoCoding coding) {
+  return coding != VideoCoding::kH264 && coding != VideoCoding::kHevcColours_10;
+}
+/// Of colours of so many bits. Both are MP4.
+constexpr VideoCoding colour_coding(int bits) {
+  return bits > 8 ? VideoCoding::kHevcColours_10 : VideoCoding::kH264;
+}
 
 }  // namespace vantage

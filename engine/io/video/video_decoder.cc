@@ -36,6 +36,8 @@ bool can_decode_frames_at_once(AVCodecID codec) {
   }
 }
 
+}  // namespace
+
 LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& name) {
   const AVCodec* decoder = libav().avcodec_find_decoder(stream.codecpar->codec_id);
   if (decoder == nullptr) {
@@ -64,7 +66,10 @@ LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& 
   return codec;
 }
 
-}  // namespace
+std::string name_of_lossy_codec(const AVStream& stream) {
+  const AVCodecDescriptor* codec = libav().avcodec_descriptor_get(stream.codecpar->codec_id);
+  return codec != nullptr && (codec->props & AV_CODEC_PROP_LOSSY) != 0 ? codec->name : "";
+}
 
 VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads)
     : threads_(threads), input_(open_media_file(path)), stream_(find_video_stream(*input_)) {

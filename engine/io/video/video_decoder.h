@@ -11,6 +11,11 @@
 
 namespace vantage {
 
+/// The decoder of `stream`, open. Throws Error naming `name` when there is none.
+LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& name);
+/// FFmpeg's name of its codec; empty where that is lossless.
+std::string name_of_lossy_codec(const AVStream& stream);
+
 /// Decodes the video of a file, frame by frame in order of presentation. Never returns a damaged
 /// frame, nor any after it, which may refer to it. Thread rule: one thread at a time.
 class VideoDecoder {

@@ -1,15 +1,22 @@
 #include "engine/io/video/video_encoder.h"
 
 #include <new>
+#include <string>
 #include <utility>
 
 #include "engine/io/video/libav_functions.h"
+#include "engine/io/video/stated_format.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
 }
 
 namespace vantage {
+namespace {
+
+constexpr const char* kX265 = "x265-params";
+
+}  // namespace
 
 EncoderSetup::EncoderSetup(const VideoEncoding& encoding, int width, int height)
     : name_(traits_of(encoding.coding).encoder),
@@ -28,11 +35,16 @@ EncoderSetup::EncoderSetup(const VideoEncoding& encoding, int width, int height)
   encoder_->width = side(width);
   encoder_->height = side(height);
   encoder_->pix_fmt = static_cast<AVPixelFormat>(coding.pixel_format);
+  if (const PixelAspect aspect = encoding.format.pixel_aspect; aspect != PixelAspect()) {
+    encoder_->sample_aspect_ratio = {aspect.width, aspect.height};
+  }
   encoder_->color_range = coding.has_full_range ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+  const FilmColours colours = written_colours(encoding.format.colours);
   if (!is_grey(encoding.coding)) {
-    encoder_->colorspace = AVCOL_SPC_BT709;
-    encoder_->color_primaries = AVCOL_PRI_BT709;
-    encoder_->color_trc = AVCOL_TRC_BT709;
+    encoder_->color_range = colours.has_full_range ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+    encoder_->colorspace = static_cast<AVColorSpace>(colours.matrix);
+    encoder_->color_primaries = static_cast<AVColorPrimaries>(colours.primaries);
+    encoder_->color_trc = static_cast<AVColorTransferCharacteristic>(colours.transfer);
     encoder_->chroma_sample_location = AVCHROMA_LOC_LEFT;
   }
   encoder_->time_base = time_unit;
@@ -44,6 +56,12 @@ EncoderSetup::EncoderSetup(const VideoEncoding& encoding, int width, int height)
     encoder_->gop_size = 1;  // every frame can be decoded alone
   }
   av_dict_parse_string(&options_, coding.options, "=", ",", 0);
+  if (encoding.coding == VideoCoding::kHevcColours_10 && colours.is_hdr()) {
+    std::string hdr = std::string(av_dict_get(options_, kX265, nullptr, 0)->value) + ":hdr10=1";
+    hdr += colours.mastering_display.empty() ? "" : ":master-display=" + colours.mastering_display;
+    hdr += colours.light_level.empty() ? "" : ":max-cll=" + colours.light_level;
+    av_dict_set(&options_, kX265, hdr.c_str(), 0);
+  }
   if (coding.has_crf) {
     av_dict_set_int(&options_, "crf", encoding.crf, 0);
   }

@@ -28,6 +28,7 @@ class VideoFrames : public FrameSource {
   [[nodiscard]] std::optional<FrameTimes> frame_times() const override {
     return reader_->frame_times();
   }
+  [[nodiscard]] FilmFormat film_format() const override { return reader_->film_format(); }
   [[nodiscard]] std::filesystem::path video_file() const override { return name_; }
   [[nodiscard]] std::string identity() const override;
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/image/photograph.h"
+#include "engine/io/video/film_format.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/video_coding.h"
 #include "engine/io/video/video_picture.h"
@@ -31,6 +32,8 @@ class VideoReader {
   [[nodiscard]] std::optional<FrameRate> frame_rate() const;
   /// Empty if the rate is constant, and where not all times are known, as in interlaced video.
   [[nodiscard]] const std::optional<FrameTimes>& frame_times() const;
+  /// What the film states of its pictures.
+  [[nodiscard]] const FilmFormat& film_format() const;
   /// Frames in the index of an MP4 or MOV; in other containers the packets of the video are
   /// counted, which reads the whole file. Interlaced videos may have fewer, as may recordings that
   /// start mid-programme, by up to a fiftieth. In a truncated file without index, the incomplete
@@ -71,6 +74,9 @@ struct VideoEncoding {
   /// Constant rate factor of H.264 and HEVC, 0 (best) to 51 (worst).
   int crf = 18;
   VideoCoding coding = VideoCoding::kH264;
+  /// Of the film that the pictures are made of: the file states its pixels' shape and, of codings
+  /// of colours, written_colours().
+  FilmFormat format = {};
 };
 
 /// Writes an MP4 (H.264, yuv420p, for browsers), or another coding. All but FFV1 have even sizes

@@ -37,6 +37,10 @@ class Segment {
       fail("holds no video");
     }
     read_only(*input_, *stream_);
+    // Of some codecs the container alone has it.
+    if (stream_->sample_aspect_ratio.num > 0) {
+      stream_->codecpar->sample_aspect_ratio = stream_->sample_aspect_ratio;
+    }
   }
 
   [[nodiscard]] const AVCodecParameters& parameters() const { return *stream_->codecpar; }

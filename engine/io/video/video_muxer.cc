@@ -54,6 +54,7 @@ int VideoMuxer::add_stream(const AVCodecParameters& parameters, AVRational time_
     throw std::bad_alloc();
   }
   stream->codecpar->codec_tag = 0;  // another container's tag may be meaningless here
+  stream->sample_aspect_ratio = parameters.sample_aspect_ratio;
   stream->time_base = time_unit;
   if (is_matroska_ && output_->nb_streams == 1 && is_steady) {
     // Times are rounded to milliseconds there, so the duration of a frame is stored, too.

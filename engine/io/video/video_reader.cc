@@ -11,6 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/io/video/libav_functions.h"
+#include "engine/io/video/stated_format.h"
 #include "engine/io/video/video_decoder.h"
 #include "engine/io/video/video_io.h"
 #include "engine/io/video/video_timing.h"
@@ -42,6 +43,7 @@ struct VideoReader::State {
   std::string lossy_codec;  ///< empty: lossless
   int width = 0;
   int height = 0;
+  FilmFormat format;
   VideoTiming timing;
   std::shared_ptr<PictureConverters> converters = std::make_shared<PictureConverters>();
   int frames_read = 0;
@@ -185,10 +187,13 @@ VideoReader::VideoReader(const std::filesystem::path& path)
   VideoDecoder& decoder = *state_->decoder;
   state_->width = decoder.stream().codecpar->width;
   state_->height = decoder.stream().codecpar->height;
-  const AVCodecDescriptor* codec =
-      libav().avcodec_descriptor_get(decoder.stream().codecpar->codec_id);
-  if (codec != nullptr && (codec->props & AV_CODEC_PROP_LOSSY) != 0) {
-    state_->lossy_codec = codec->name;
+  state_->lossy_codec = name_of_lossy_codec(decoder.stream());
+  state_->format = stated_format(decoder.stream(), nullptr);
+  if (state_->format.colours.is_hdr()) {
+    VideoDecoder first(path, 1);
+    if (first.next() == VideoDecoder::Step::kFrame) {
+      state_->format = stated_format(first.stream(), &first.frame());
+    }
   }
   state_->timing = examine_video_timing(decoder.input(), decoder.stream(), path);
 }
@@ -201,6 +206,7 @@ std::optional<FrameRate> VideoReader::frame_rate() const { return state_->timing
 const std::optional<FrameTimes>& VideoReader::frame_times() const {
   return state_->timing.frame_times;
 }
+const FilmFormat& VideoReader::film_format() const { return state_->format; }
 int VideoReader::frame_count() const { return state_->timing.frames; }
 int VideoReader::frames_missing() const { return state_->frames_missing; }
 

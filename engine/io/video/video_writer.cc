@@ -64,7 +64,8 @@ struct VideoWriter::State {
       : width(frame_width),
         height(frame_height),
         time_unit(time_unit_of(encoding.rate)),
-        convert(make_frame_conversion(encoding.coding, frame_width, frame_height)),
+        convert(make_frame_conversion(encoding.coding, frame_width, frame_height,
+                                      encoding.format.colours)),
         file(path) {
     open_encoder(encoding);
     AVCodecParameters* parameters = libav().avcodec_parameters_alloc();

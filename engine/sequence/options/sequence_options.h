@@ -9,6 +9,7 @@
 
 #include "engine/image/stereo_display.h"
 #include "engine/io/images/preview.h"
+#include "engine/io/video/film_format.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/video_coding.h"
 #include "engine/matching/options/match_options.h"
@@ -64,6 +65,13 @@ bool is_picture(SequenceOutput output);
 /// Whether the output is always a video.
 constexpr bool is_always_video(SequenceOutput output) {
   return output == SequenceOutput::kDepthVideo;
+}
+
+/// What its video states of pictures made of `film`: all have the shape of its pixels, and those
+/// that show what it shows its colours.
+inline FilmFormat film_format_of(SequenceOutput output, const FilmFormat& film) {
+  const bool shows_film = output == SequenceOutput::kViews || output == SequenceOutput::kStereo;
+  return {film.pixel_aspect, shows_film ? film.colours : FilmColours()};
 }
 
 /// Whether it is one for all frames instead of one per frame.
@@ -139,6 +147,7 @@ struct SequenceOptions {
   std::optional<double> disparity_step_px = std::nullopt;
   CloudOptions cloud;    ///< of kCloud and kMesh; its max_depth in metres also of kDepth
   FrameRate frame_rate;  ///< of written videos
+  FilmFormat film;       ///< of the input: what written videos state, see film_format_of()
   int crf = 18;          ///< of written videos, see VideoEncoding
   bool sound = true;     ///< videos include the sound of the input
   /// Frames per chunk; at its ends videos are cut into segments and no state passes from frame to

@@ -37,6 +37,7 @@ class ForwardedPairs : public PairSource {
   [[nodiscard]] std::optional<FrameTimes> frame_times() const override {
     return source_->frame_times();
   }
+  [[nodiscard]] FilmFormat film_format() const override { return source_->film_format(); }
   [[nodiscard]] Sound sound() const override { return source_->sound(); }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override {
     return source_->files();

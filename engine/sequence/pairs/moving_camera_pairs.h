@@ -29,6 +29,7 @@ class MovingCameraPairs : public PairSource {
   [[nodiscard]] int unpaired_frames() const final { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const final;
   [[nodiscard]] std::optional<FrameTimes> frame_times() const final;
+  [[nodiscard]] FilmFormat film_format() const final { return source_->film_format(); }
   [[nodiscard]] Sound sound() const final {
     return {source_->video_file(), static_cast<double>(first_left()) / between_pairs_};
   }

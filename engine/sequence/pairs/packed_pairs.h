@@ -25,6 +25,8 @@ class PackedPairs : public PairSource {
   [[nodiscard]] std::optional<FrameTimes> frame_times() const override {
     return source_->frame_times();
   }
+  /// Halves of half size are stretched, so pixels keep their shape.
+  [[nodiscard]] FilmFormat film_format() const override { return source_->film_format(); }
   [[nodiscard]] Sound sound() const override { return {source_->video_file(), 0.0}; }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override {
     return source_->files();

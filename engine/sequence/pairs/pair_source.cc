@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "engine/image/orientation.h"
 #include "engine/io/video/image_sequence.h"
 #include "engine/io/video/raw_video.h"
+#include "engine/io/video/stream_input.h"
 #include "engine/sequence/pairs/every_nth_pair.h"
 #include "engine/sequence/pairs/live_pairs.h"
 #include "engine/sequence/pairs/masked_pairs.h"
@@ -84,22 +86,43 @@ int taken_step(const FrameStep& every, const PairSource& pairs) {
   return static_cast<int>(std::clamp(frames, 1.0, static_cast<double>(FrameStep::kMaxPairs)));
 }
 
+std::unique_ptr<PairSource> packed_pairs(std::unique_ptr<FrameSource> source,
+                                         StereoPacking packing) {
+  if (packing.layout == StereoLayout::kFrames) {
+    const SuccessiveFrames turns{.step = packing.right_first ? -1 : 1, .distance = 2};
+    return make_moving_camera_pairs(std::move(source), turns);
+  }
+  return std::make_unique<PackedPairs>(std::move(source), packing);
+}
+
+/// All are open before the first is read.
+std::unique_ptr<PairSource> open_streams(const PairSourceOptions& options) {
+  const auto input_of = [&](const std::string& name) {
+    return std::make_unique<StreamInput>(name, options.stop);
+  };
+  const auto video_of = [&](std::unique_ptr<StreamInput> input) {
+    return std::make_unique<StreamedVideo>(std::move(input), options.raw_video, options.raw_rate);
+  };
+  if (!options.stereo.empty()) {
+    return packed_pairs(video_of(input_of(options.stereo)), *options.packing);
+  }
+  std::unique_ptr<StreamInput> left_input = input_of(options.left);
+  std::unique_ptr<StreamInput> right_input = input_of(options.right);
+  auto left = video_of(std::move(left_input));
+  auto right = video_of(std::move(right_input));
+  return std::make_unique<TwoCameraPairs>(std::move(left), std::move(right), options.offset_frames,
+                                          false);
+}
+
 std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
   if (options.queue != nullptr) {
     return std::make_unique<SuppliedPairs>(options.queue);
   }
-  if (options.stereo == "-") {
-    return std::make_unique<PackedPairs>(
-        std::make_unique<StreamedVideo>(options.raw_video, options.raw_rate, options.stop),
-        *options.packing);
+  if (options.is_stream()) {
+    return open_streams(options);
   }
   if (!options.stereo.empty()) {
-    std::unique_ptr<FrameSource> source = open_frame_source(options.stereo, options.reading);
-    if (options.packing->layout == StereoLayout::kFrames) {
-      const SuccessiveFrames turns{.step = options.packing->right_first ? -1 : 1, .distance = 2};
-      return make_moving_camera_pairs(std::move(source), turns);
-    }
-    return std::make_unique<PackedPairs>(std::move(source), *options.packing);
+    return packed_pairs(open_frame_source(options.stereo, options.reading), *options.packing);
   }
   if (!options.pairs.empty()) {
     return open_pair_list(options.pairs, options.reading);
@@ -123,6 +146,11 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
 
 }  // namespace
 
+bool PairSourceOptions::is_stream() const {
+  return std::ranges::any_of(std::array{&stereo, &left, &right},
+                             [](const std::string* name) { return is_stream_name(*name); });
+}
+
 void PairSourceOptions::validate() const {
   const bool two_cameras = !left.empty() || !right.empty();
   const int kinds = (two_cameras ? 1 : 0) + (stereo.empty() ? 0 : 1) + (pairs.empty() ? 0 : 1) +
@@ -142,6 +170,16 @@ void PairSourceOptions::validate() const {
   }
   if (offset_frames != 0 && !two_cameras) {
     throw UsageError(fmt::format("offset is {}, expected 0 without left and right", offset_frames));
+  }
+  if (two_cameras && is_stream() && !(is_stream_name(left) && is_stream_name(right))) {
+    throw UsageError(fmt::format("{} is a stream, expected one for both sides",
+                                 is_stream_name(left) ? "left" : "right"));
+  }
+  if (two_cameras && is_stream() && left == right) {
+    throw UsageError("left and right are the same stream, which is read once");
+  }
+  if (!more.empty() && is_stream()) {
+    throw UsageError("more is given and left is a stream, expected files");
   }
   if (!more.empty() && !two_cameras) {
     throw UsageError("more is given, expected it with left and right only");
@@ -232,10 +270,10 @@ std::unique_ptr<PairSource> open_pair_source(const PairSourceOptions& options) {
   if (options.queue != nullptr) {
     // Who supplies pairs may wait for the result of the first.
     all = std::make_unique<StreamedPairs>(std::move(all), 1);
-  } else if (options.stereo == "-") {
+  } else if (options.is_stream()) {
     all = std::make_unique<StreamedPairs>(std::move(all));
   }
-  const bool is_film = options.stereo == "-" || !all->sound().file.empty();
+  const bool is_film = options.is_stream() || !all->sound().file.empty();
   all->set_white_level(is_film && !options.white_level ? WhiteLevel()
                                                        : white_level_of(*all, options.white_level));
   if (options.live && !all->is_stream()) {

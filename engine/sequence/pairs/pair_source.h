@@ -75,22 +75,22 @@ class PairQueue;
 
 /// Source of the pairs of a run: exactly one of the five.
 struct PairSourceOptions {
-  /// Two sources of open_frame_source(), paired by index: frame i + offset_frames of the right one
-  /// belongs to frame i of the left one. With a negative offset the first −offset_frames of the
-  /// left one have no partner: pair 0 is then the first that has one.
+  /// Two sources of open_frame_source(), or two streams, paired by index: frame i + offset_frames
+  /// of the right one belongs to frame i of the left one. With a negative offset the first
+  /// −offset_frames of the left one have no partner: pair 0 is then the first that has one.
   std::string left;
   std::string right;
   int offset_frames = 0;
   /// With left and right: sources of more cameras, whose frame i belongs to frame i of the left
   /// one.
   std::vector<std::string> more;
-  /// One source whose frames hold both images; "-" is standard input.
+  /// One source whose frames hold both images; it may be a stream, see is_stream_name().
   std::string stereo;
   std::optional<StereoPacking> packing;
-  /// "-": y4m from standard input, or rawvideo of this shape and frame rate (see StreamedVideo).
+  /// Of streams: rawvideo of this shape and frame rate (see StreamInput::open()).
   std::optional<RawVideoShape> raw_video;
   FrameRate raw_rate;
-  const std::atomic<bool>* stop = nullptr;  ///< "-": reading ends once it is set
+  const std::atomic<bool>* stop = nullptr;  ///< of streams: reading ends once it is set
   /// A CSV file with the columns left,right: one pair of image files per line. Names are relative
   /// to the file's folder; empty lines and lines that start with # are skipped; quotes as in RFC
   /// 4180, blanks around unquoted fields are dropped. A heading names the columns, in any order:
@@ -112,6 +112,8 @@ struct PairSourceOptions {
   std::optional<double> white_level;
   PhotographReading reading;
 
+  /// Whether pairs arrive once, see is_stream_name().
+  [[nodiscard]] bool is_stream() const;
   /// Throws UsageError naming the field, its value and what was expected.
   void validate() const;
 };
@@ -181,6 +183,8 @@ class PairSource {
   [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const = 0;
   /// Times of all pairs if that video has a variable rate; else empty.
   [[nodiscard]] virtual std::optional<FrameTimes> frame_times() const { return std::nullopt; }
+  /// What the left or packed film states of its pictures; of image files the default.
+  [[nodiscard]] virtual FilmFormat film_format() const { return {}; }
   /// Video file with the sound, and its frame that is pair 0; the file is empty if there is none.
   struct Sound {
     std::filesystem::path file;

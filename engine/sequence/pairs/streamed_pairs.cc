@@ -39,11 +39,15 @@ bool StreamedPairs::fetch_and_hold(FramePair& pair) {
     first_held_ = next_index_;
   }
   Held held;
+  const bool wants_right = std::exchange(pair.wants_right, true);  // who looks later may want it
   try {
-    if (!fetch_from_source(pair)) {
+    const bool is_there = fetch_from_source(pair);
+    pair.wants_right = wants_right;
+    if (!is_there) {
       return false;
     }
-    const std::size_t bytes = std::max<std::size_t>(1, pair.fetched[0].picture.bytes());
+    const std::size_t bytes =
+        std::max<std::size_t>(1, pair.fetched[0].picture.bytes() + pair.fetched[1].picture.bytes());
     limit_ = static_cast<int>(
         std::clamp<std::size_t>(kMaxHeldBytes / bytes, 1, static_cast<std::size_t>(max_held_)));
     copy_frame(pair.fetched[0], held.fetched[0]);
@@ -51,6 +55,7 @@ bool StreamedPairs::fetch_and_hold(FramePair& pair) {
     held.index = pair.index;
     held.remarks = pair.remarks;
   } catch (const Error&) {
+    pair.wants_right = wants_right;
     held.problem = std::current_exception();
   }
   const std::exception_ptr problem = held.problem;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/io/video/stated_format.h"
 #include "engine/sequence/pairs/frame_numbering.h"
 
 namespace vantage {
@@ -105,6 +106,11 @@ bool TwoCameraPairs::fetch(FramePair& pair) {
 
 void TwoCameraPairs::skip_to(int index) {
   assert(index >= 0 && index <= pair_count_);
+  // Who fills two streams may wait until both are read.
+  for (int i = next_index_ + 1; left_->frame_count() == kUnknownFrames && i < index; ++i) {
+    left_->skip_to(first_left_ + i);
+    right_->skip_to(first_right_ + i);
+  }
   left_->skip_to(first_left_ + index);
   right_->skip_to(first_right_ + index);
   next_index_ = index;
@@ -132,6 +138,16 @@ std::vector<std::string> TwoCameraPairs::remarks() const {
         "the left video has {} frames a second but the right one {}: pairs by index may "
         "not be of the same moment",
         to_string(*left_rate), to_string(*right_rate)));
+  }
+  if (left_->film_format() != right_->film_format()) {
+    const auto text = [](const FrameSource& side) {
+      const std::string stated = to_text(side.film_format());
+      return stated.empty() ? "no such" : stated;
+    };
+    remarks.push_back(
+        fmt::format("the left film states {}, the right one {}: what is written is "
+                    "stated as the left one",
+                    text(*left_), text(*right_)));
   }
   if (numbers_matter_) {
     const std::vector<std::string> numbering =

@@ -1,0 +1,276 @@
+#include "engine/io/video/stream_input.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <string_view>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/io/video/libav_functions.h"
+#include "engine/late_library.h"
+#include "scheduler/interruption.h"
+
+extern "C" {
+#include <libavformat/avformat.h>
+#include <libavutil/macros.h>
+#include <libavutil/mem.h>
+#include <libavutil/pixdesc.h>
+}
+
+namespace vantage {
+namespace {
+
+constexpr const char* kStandardInput = "-";
+constexpr int kInputBufferBytes = 1 << 16;
+constexpr int kPipeBytes = 1 << 20;  // what Linux gives to everyone
+constexpr int kStopInterval_ms = 100;
+constexpr std::chrono::seconds kConnecting{10};
+constexpr std::chrono::seconds kSilence{60};
+/// No protocol: nothing else may be opened.
+constexpr const char* kNothing = "none";
+
+/// An address that may be named.
+struct Scheme {
+  std::string_view prefix;
+  const char* protocols;                ///< that it uses
+  const char* demultiplexer = nullptr;  ///< which connects; null: found by the first bytes
+};
+constexpr std::array<Scheme, 4> kSchemes = {{{"tcp://", "tcp"},
+                                             {"udp://", "udp"},
+                                             {"http://", "http,tcp"},
+                                             {"rtsp://", "rtsp,rtp,udp,tcp", "rtsp"}}};
+
+const Scheme* scheme_of(std::string_view name) {
+  const auto found = std::ranges::find_if(
+      kSchemes, [&](const Scheme& scheme) { return name.starts_with(scheme.prefix); });
+  return found == kSchemes.end() ? nullptr : found;
+}
+
+bool is_pipe(const std::string& name) {
+  struct stat status {};
+  return ::stat(name.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
+}
+
+bool is_camera(const std::string& name) {
+  constexpr unsigned kVideo4Linux = 81;  // Linux's number of the driver
+  struct stat status {};
+  return ::stat(name.c_str(), &status) == 0 && S_ISCHR(status.st_mode) &&
+         major(status.st_rdev) == kVideo4Linux;
+}
+
+/// Without user and password.
+std::string without_user(const std::string& address) {
+  const std::size_t begin = address.find("://") + 3;
+  const std::size_t at = address.find('@', begin);
+  return at < address.find('/', begin) ? address.substr(0, begin) + address.substr(at + 1)
+                                       : address;
+}
+
+/// Adds the demultiplexers of cameras to libavformat's. Versions of both libraries go together.
+void register_cameras() {
+  static const LateLibrary library(
+      "libavdevice.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR),
+      "cannot read cameras (Debian: libavdevice" AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR) ")");
+  library.function<void (*)()>("avdevice_register_all")();
+}
+
+/// FFmpeg's options of raw frames, and of modes of a camera.
+void set_shape(const RawVideoShape& raw, FrameRate rate, AVDictionary** options) {
+  if (av_get_pix_fmt(raw.pixel_format.c_str()) == AV_PIX_FMT_NONE) {
+    throw UsageError(
+        fmt::format("raw-video has the pixel format '{}', expected one of FFmpeg's such as rgb24, "
+                    "gray, yuv420p",
+                    raw.pixel_format));
+  }
+  av_dict_set(options, "video_size", fmt::format("{}x{}", raw.width_px, raw.height_px).c_str(), 0);
+  av_dict_set(options, "pixel_format", raw.pixel_format.c_str(), 0);
+  av_dict_set(options, "framerate", to_string(rate).c_str(), 0);
+}
+
+}  // namespace
+
+bool is_stream_name(const std::string& name) {
+  return name == kStandardInput || scheme_of(name) != nullptr || is_pipe(name) || is_camera(name);
+}
+
+StreamInput::StreamInput(std::string name, const std::atomic<bool>* stop)
+    : name_(std::move(name)), shown_name_(name_), stop_(stop) {
+  silence_libav();
+  if (const Scheme* scheme = scheme_of(name_)) {
+    kind_ = Kind::kNetwork;
+    shown_name_ = without_user(name_);
+    if (scheme->demultiplexer == nullptr) {
+      connect(scheme->protocols);
+    }
+  } else if (is_camera(name_)) {
+    kind_ = Kind::kCamera;
+  } else {
+    open_pipe();
+  }
+}
+
+StreamInput::~StreamInput() {
+  if (kind_ == Kind::kNetwork) {
+    libav().avio_closep(&io_);
+  } else if (io_ != nullptr) {
+    av_freep(&io_->buffer);  // libav may have exchanged it
+    libav().avio_context_free(&io_);
+  }
+  if (descriptor_ > STDIN_FILENO) {
+    ::close(descriptor_);
+  }
+}
+
+void StreamInput::fail(const std::string& problem) const {
+  throw Error(fmt::format("{}: {}", shown_name_, problem));
+}
+
+void StreamInput::open_pipe() {
+  if (name_ == kStandardInput) {
+    shown_name_ = "standard input";
+    descriptor_ = STDIN_FILENO;
+  } else {
+    descriptor_ = ::open(name_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor_ < 0) {
+      fail(fmt::format("cannot be opened ({})", std::strerror(errno)));
+    }
+    (void)::fcntl(descriptor_, F_SETPIPE_SZ, kPipeBytes);
+  }
+  auto* const buffer = static_cast<unsigned char*>(av_malloc(kInputBufferBytes));
+  if (buffer != nullptr) {
+    io_ =
+        libav().avio_alloc_context(buffer, kInputBufferBytes, 0, this, read_pipe, nullptr, nullptr);
+  }
+  if (io_ == nullptr) {
+    av_free(buffer);
+    throw std::bad_alloc();
+  }
+}
+
+int StreamInput::read_pipe(void* input, std::uint8_t* bytes, int size) {
+  const auto& self = *static_cast<const StreamInput*>(input);
+  // Of a named pipe the end comes after its first writer, not before.
+  pollfd end{self.descriptor_, POLLIN, 0};
+  while (!self.is_stopped()) {
+    const int ready = ::poll(&end, 1, self.stop_ != nullptr ? kStopInterval_ms : -1);
+    if (ready == 0 || (ready < 0 && errno == EINTR)) {
+      continue;
+    }
+    const auto count = ::read(self.descriptor_, bytes, static_cast<std::size_t>(size));
+    if (count > 0) {
+      return static_cast<int>(count);
+    }
+    if (count == 0) {
+      return AVERROR_EOF;
+    }
+    if (errno != EINTR && errno != EAGAIN) {
+      return AVERROR(errno);
+    }
+  }
+  return AVERROR_EXIT;
+}
+
+int StreamInput::is_over(void* input) {
+  const auto& self = *static_cast<const StreamInput*>(input);
+  return self.is_stopped() || std::chrono::steady_clock::now() > self.deadline_ ? 1 : 0;
+}
+
+void StreamInput::allow_silence() {
+  if (kind_ == Kind::kNetwork) {
+    limit_ = kSilence;
+    deadline_ = std::chrono::steady_clock::now() + limit_;
+  }
+}
+
+std::string StreamInput::problem(int result) const {
+  return result == AVERROR_EXIT && !is_stopped()
+             ? fmt::format("no answer within {} s", limit_.count())
+             : libav_message(result);
+}
+
+void StreamInput::connect(const char* protocols) {
+  limit_ = kConnecting;
+  deadline_ = std::chrono::steady_clock::now() + limit_;
+  AVDictionary* options = nullptr;
+  av_dict_set(&options, "protocol_whitelist", protocols, 0);
+  const AVIOInterruptCB callback = {is_over, this};
+  const int result = libav().avio_open2(&io_, name_.c_str(), AVIO_FLAG_READ, &callback, &options);
+  av_dict_free(&options);
+  if (is_stopped()) {
+    throw scheduler::Interrupted();
+  }
+  if (result < 0) {
+    fail(fmt::format("cannot be opened ({})", problem(result)));
+  }
+}
+
+LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate raw_rate) {
+  const Scheme* const scheme = scheme_of(name_);
+  const bool connects = io_ == nullptr;
+  AVDictionary* options = nullptr;
+  const AVInputFormat* format = nullptr;
+  if (raw && (kind_ == Kind::kCamera || !connects)) {
+    set_shape(*raw, raw_rate, &options);
+    format = libav().av_find_input_format("rawvideo");
+  }
+  if (kind_ == Kind::kCamera) {
+    register_cameras();
+    format = libav().av_find_input_format("video4linux2");
+  } else if (connects) {
+    format = libav().av_find_input_format(scheme->demultiplexer);
+    av_dict_set(&options, "rtsp_flags", "prefer_tcp", 0);  // which loses nothing
+  }
+  AVFormatContext* opened = libav().avformat_alloc_context();
+  if (opened == nullptr) {
+    av_dict_free(&options);
+    throw std::bad_alloc();
+  }
+  opened->pb = io_;
+  opened->interrupt_callback = {is_over, this};
+  opened->protocol_whitelist =
+      av_strdup(connects && scheme != nullptr ? scheme->protocols : kNothing);
+  if (format == nullptr) {
+    opened->format_whitelist = av_strdup(kVideoContainers);
+  }
+  // Rates are those that are stated: frames are not awaited to measure them.
+  opened->fps_probe_size = 0;
+  allow_silence();
+  if (connects && kind_ == Kind::kNetwork) {
+    limit_ = kConnecting;
+    deadline_ = std::chrono::steady_clock::now() + limit_;
+  }
+  int result =
+      libav().avformat_open_input(&opened, connects ? name_.c_str() : "", format, &options);
+  av_dict_free(&options);
+  LibavInput input(result < 0 ? nullptr : opened);
+  const AVStream* const stream = result < 0 ? nullptr : find_video_stream(*input);
+  // Where the header says it all, nothing more is awaited.
+  if (result >= 0 && (stream == nullptr || stream->codecpar->width == 0)) {
+    allow_silence();
+    result = libav().avformat_find_stream_info(input.get(), nullptr);
+  }
+  if (is_stopped()) {
+    throw scheduler::Interrupted();
+  }
+  if (result < 0 && (connects || result == AVERROR_EXIT)) {
+    fail(fmt::format("cannot be opened ({})", problem(result)));
+  }
+  if (result < 0 || find_video_stream(*input) == nullptr) {
+    fail(raw ? "is empty or no raw video"
+             : "is empty or no video that can be streamed, such as y4m, MPEG-TS or Matroska; "
+               "rawvideo needs `raw-video`");
+  }
+  return input;
+}
+
+}  // namespace vantage
