@@ -24,6 +24,7 @@ class SeveralCameras final : public PairSource {
   [[nodiscard]] int unpaired_frames() const override;
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override;
   [[nodiscard]] std::optional<FrameTimes> frame_times() const override;
+  [[nodiscard]] FilmFormat film_format() const override { return pairs_->film_format(); }
   [[nodiscard]] Sound sound() const override { return pairs_->sound(); }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override;
   [[nodiscard]] std::vector<std::string> identities() const override;
