@@ -48,6 +48,9 @@ StreamedVideo::StreamedVideo(std::unique_ptr<StreamInput> bytes,
       is_raw_(is_of_raw_frames(*input_)),
       lossy_codec_(name_of_lossy_codec(*stream_)) {
   const AVCodecParameters& parameters = *stream_->codecpar;
+  if (parameters.width == 0 || parameters.height == 0) {
+    throw Error(fmt::format("{}: none of its frames can be decoded", bytes_->shown_name()));
+  }
   FileBytes({}, bytes_->shown_name()).check_dimensions(parameters.width, parameters.height);
   read_only(*input_, *stream_);
   if (!decode_next(first_)) {

@@ -193,7 +193,7 @@ void StreamInput::allow_silence() {
 }
 
 std::string StreamInput::problem(int result) const {
-  return result == AVERROR_EXIT && !is_stopped()
+  return std::chrono::steady_clock::now() > deadline_
              ? fmt::format("no answer within {} s", limit_.count())
              : libav_message(result);
 }
@@ -262,7 +262,8 @@ LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate 
   if (is_stopped()) {
     throw scheduler::Interrupted();
   }
-  if (result < 0 && (connects || result == AVERROR_EXIT)) {
+  const bool is_late = std::chrono::steady_clock::now() > deadline_;
+  if (result < 0 && (connects || is_late)) {
     fail(fmt::format("cannot be opened ({})", problem(result)));
   }
   if (result < 0 || find_video_stream(*input) == nullptr) {

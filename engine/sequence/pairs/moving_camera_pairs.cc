@@ -132,7 +132,7 @@ void MovingCameraVideo::skip_to(int index) {
 
 std::unique_ptr<PairSource> make_moving_camera_pairs(std::unique_ptr<FrameSource> source,
                                                      SuccessiveFrames pairs) {
-  if (source->video_file().empty()) {
+  if (source->video_file().empty() && source->frame_count() != kUnknownFrames) {
     return std::make_unique<MovingCameraImages>(std::move(source), pairs);
   }
   return std::make_unique<MovingCameraVideo>(std::move(source), pairs);

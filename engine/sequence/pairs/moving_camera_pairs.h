@@ -73,7 +73,7 @@ class MovingCameraImages : public MovingCameraPairs {
   int next_index_ = 0;
 };
 
-/// A video: every frame is decoded once and its picture kept until it has been the earlier one of a
+/// A video or a stream: every frame is decoded once and its picture kept until it has been the earlier one of a
 /// pair. Each of its two pairs makes its own photograph of it.
 class MovingCameraVideo : public MovingCameraPairs {
  public:

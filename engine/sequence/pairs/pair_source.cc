@@ -106,6 +106,9 @@ std::unique_ptr<PairSource> open_streams(const PairSourceOptions& options) {
   if (!options.stereo.empty()) {
     return packed_pairs(video_of(input_of(options.stereo)), *options.packing);
   }
+  if (!options.sequence.empty()) {
+    return make_moving_camera_pairs(video_of(input_of(options.sequence)), {.step = options.step});
+  }
   std::unique_ptr<StreamInput> left_input = input_of(options.left);
   std::unique_ptr<StreamInput> right_input = input_of(options.right);
   auto left = video_of(std::move(left_input));
@@ -147,7 +150,7 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
 }  // namespace
 
 bool PairSourceOptions::is_stream() const {
-  return std::ranges::any_of(std::array{&stereo, &left, &right},
+  return std::ranges::any_of(std::array{&stereo, &left, &right, &sequence},
                              [](const std::string* name) { return is_stream_name(*name); });
 }
 
@@ -186,11 +189,6 @@ void PairSourceOptions::validate() const {
   }
   if (!stereo.empty() && !packing) {
     throw UsageError("stereo needs packing, such as sbsl");
-  }
-  if (stereo == "-" && packing->layout == StereoLayout::kFrames) {
-    throw UsageError(fmt::format(
-        "packing is {} with stereo -, expected pictures of a stream that hold both images",
-        to_name(*packing)));
   }
   if (packing && stereo.empty()) {
     throw UsageError("packing is given without stereo");
