@@ -16,12 +16,14 @@
 #include "engine/options/synthesis_settings.h"
 #include "engine/reprojection/ply_file.h"
 #include "engine/sequence/frame_iterator.h"
+#include "engine/sequence/memory_plan.h"
 #include "engine/sequence/pairs/sequence_range.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
 #include "python/match_result.h"
 #include "python/options.h"
+#include "python/pair_feed.h"
 #include "python/remark_warnings.h"
 
 namespace vantage::python {
@@ -53,8 +55,9 @@ struct OpenSequence {
   std::optional<ShotTable> shots;
   Execution* execution = nullptr;
   int in_flight = 1;
-  std::mutex mutex;                  ///< of the next one
-  std::unique_ptr<PairSource> idle;  ///< no iterator reads it
+  ChannelOrder order = ChannelOrder::kRgb;  ///< of arrays
+  std::mutex mutex;                         ///< of the next one
+  std::unique_ptr<PairSource> idle;         ///< no iterator reads it
 
   std::unique_ptr<PairSource> take_source() {
     {
@@ -67,7 +70,7 @@ struct OpenSequence {
   }
   void give_back(std::unique_ptr<PairSource> source) {
     const std::scoped_lock lock(mutex);
-    idle = std::move(source);
+    idle = source->is_stream() ? nullptr : std::move(source);
   }
 };
 
@@ -108,6 +111,7 @@ void open(const std::optional<StereoCalibration>& calibration, OpenSequence& ope
     opened.shots = survey_shots(*session.pairs, 0, session.selection.frame_count, job.sequence,
                                 hooks, execution);
   }
+  session.pairs->forget_start();
   opened.idle = std::move(session.pairs);
 }
 
@@ -159,10 +163,16 @@ class FrameLoop {
     }
     skipped_ = frames->skipped();
     const ReleasedGil release;
+    if (opened_->job.input.queue != nullptr) {
+      opened_->job.input.queue->close();
+    }
     frames->stop();
+    dropped_ = source_->dropped_pairs();
     opened_->give_back(std::move(source_));
   }
 
+  /// Pairs that a live stream left out, once the loop is closed.
+  [[nodiscard]] int dropped() const { return dropped_; }
   [[nodiscard]] std::vector<std::pair<int, std::string>> skipped() const {
     std::vector<std::pair<int, std::string>> frames;
     for (const FrameRemark& remark : frames_ ? frames_->skipped() : skipped_) {
@@ -219,10 +229,10 @@ class FrameLoop {
       return maps_of(frame);
     });
     py::dict found;
-    found["index"] = slot.frame;
+    found["index"] = opened_->job.input.live ? slot.pair.index : slot.frame;
     found["name"] = name;
-    found["left"] = array_of(std::move(images.first), ChannelOrder::kRgb);
-    found["right"] = array_of(std::move(images.second), ChannelOrder::kRgb);
+    found["left"] = array_of(std::move(images.first), opened_->order);
+    found["right"] = array_of(std::move(images.second), opened_->order);
     found["result"] = py::cast(std::make_unique<MatchResult>(
         *opened_->execution, MatchedImages(std::move(left), std::move(right)),
         std::move(computed)));
@@ -240,15 +250,15 @@ class FrameLoop {
     py::list holes;
     py::list sources;
     for (std::size_t view = 0; view < options.views.size(); ++view) {
-      views.append(array_of(std::move(slot.views[view].image), ChannelOrder::kRgb));
+      views.append(array_of(std::move(slot.views[view].image), opened_->order));
       holes.append(array_of(std::as_const(slot.views[view].holes).view()));
-      sources.append(array_of(Photograph{std::move(slot.views[view].sources)}, ChannelOrder::kRgb));
+      sources.append(array_of(Photograph{std::move(slot.views[view].sources)}, opened_->order));
     }
     found["views"] = views;
     found["holes"] = holes;
     found["sources"] = sources;
     found["stereo"] = options.saves(SequenceOutput::kStereo)
-                          ? py::object(array_of(std::move(slot.stereo), ChannelOrder::kRgb))
+                          ? py::object(array_of(std::move(slot.stereo), opened_->order))
                           : py::none();
   }
 
@@ -257,17 +267,23 @@ class FrameLoop {
   std::optional<SequenceRun> run_;
   std::shared_ptr<FrameIterator> frames_;  ///< null: closed
   std::vector<FrameRemark> skipped_;
+  int dropped_ = 0;
   RemarkWarnings warnings_;
 };
 
 /// Sequence of the package.
 class Sequence {
  public:
-  /// `is_unrectified`: rectification with `calibration` is part of the search.
-  Sequence(const std::optional<StereoCalibration>& calibration, bool is_unrectified,
-           py::dict keywords)
-      : opened_(std::make_shared<OpenSequence>()) {
+  /// `is_unrectified`: rectification with `calibration` is part of the search. `is_supplied`: its
+  /// pairs come from a PairFeed, one for each loop.
+  Sequence(std::optional<StereoCalibration> calibration, bool is_unrectified, bool is_supplied,
+           bool bgr, py::dict keywords)
+      : opened_(std::make_shared<OpenSequence>()), calibration_(std::move(calibration)) {
     SequenceJob& job = opened_->job;
+    opened_->order = bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb;
+    if (is_supplied) {
+      job.input.queue = std::make_shared<PairQueue>(1);  // of each loop another one
+    }
     opened_->execution = &take_execution(keywords);
     Settings settings;
     add_input_settings(settings, job);
@@ -280,23 +296,48 @@ class Sequence {
     add_frames_setting(settings, job.frames, job.step_of_frames);
     add_chunk_frames_setting(settings, job);
     add_in_flight_setting(settings, job);
+    add_live_setting(settings, job);
     settings.flag("keep-going", job.keep_going, "");
     add_reference_setting(settings, job.sequence.match.reference);
     add_match_settings(settings, job.sequence.match);
     add_synthesis_settings(settings, job.sequence.synthesis);
     set_options(settings, keywords);
-    if (calibration) {
+    if (calibration_) {
       (is_unrectified ? job.unrectified : job.calibration) =
-          calibration->file.empty() ? "calibration" : calibration->file;
+          calibration_->file.empty() ? "calibration" : calibration_->file;
     }
     read_pose_files(job.views, read_toml);
-    complete_sequence(job, false);
+    complete_sequence(job, is_supplied);
     require_outputs_of_frames(job.sequence);
     check_sequence(job, settings);
     if (job.input.is_stream()) {
       throw UsageError("the input is a stream, expected files: 'vantage run' reads streams");
     }
-    on_threads_of(*opened_->execution, [&] { open(calibration, *opened_); });
+    if (is_supplied && job.sequence.needs_shots()) {
+      throw UsageError("an option is shot, expected another value: pairs come one by one");
+    }
+    if (!is_supplied) {
+      on_threads_of(*opened_->execution, [&] { open(calibration_, *opened_); });
+    }
+  }
+
+  [[nodiscard]] std::shared_ptr<PairFeed> feed() const {
+    const int threads = opened_->execution->executor().thread_count();
+    const int room = opened_->job.in_flight.value_or(default_frames_in_flight(threads));
+    return std::make_shared<PairFeed>(static_cast<std::size_t>(room), opened_->order);
+  }
+  /// Null where it ends before its first pair. Who supplies pairs may need the threads meanwhile.
+  [[nodiscard]] std::unique_ptr<FrameLoop> loop_over(const PairFeed& feed) const {
+    if (!without_gil([&] { return feed.has_pairs(); })) {
+      return nullptr;
+    }
+    auto opened = std::make_shared<OpenSequence>();
+    opened->job = opened_->job;
+    opened->job.input.queue = feed.queue();
+    opened->execution = opened_->execution;
+    opened->order = opened_->order;
+    on_threads_of(*opened->execution, [&] { open(calibration_, *opened); });
+    return std::make_unique<FrameLoop>(std::move(opened), std::vector<int>());
   }
 
   [[nodiscard]] int count() const { return opened_->session.selection.frame_count; }
@@ -311,6 +352,7 @@ class Sequence {
 
  private:
   std::shared_ptr<OpenSequence> opened_;
+  std::optional<StereoCalibration> calibration_;
 };
 
 }  // namespace
@@ -319,9 +361,16 @@ void bind_sequence(py::module_& module) {
   py::class_<FrameLoop>(module, "FrameLoop")
       .def("next", &FrameLoop::next)
       .def("close", &FrameLoop::close)
-      .def("skipped", &FrameLoop::skipped);
+      .def("skipped", &FrameLoop::skipped)
+      .def("dropped", &FrameLoop::dropped);
+  py::class_<PairFeed, std::shared_ptr<PairFeed>>(module, "PairFeed")
+      .def("put", &PairFeed::put)
+      .def("end", &PairFeed::end)
+      .def("close", &PairFeed::close);
   py::class_<Sequence>(module, "Sequence")
-      .def(py::init<const std::optional<StereoCalibration>&, bool, py::dict>())
+      .def(py::init<std::optional<StereoCalibration>, bool, bool, bool, py::dict>())
+      .def("feed", &Sequence::feed)
+      .def("loop_over", &Sequence::loop_over)
       .def("loop", &Sequence::loop)
       .def("selected", &Sequence::selected)
       .def("__len__", &Sequence::count);

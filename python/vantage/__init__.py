@@ -14,6 +14,8 @@ share one pool of threads; Ctrl-C interrupts them. docs/python.md is a tutorial.
 from __future__ import annotations
 
 import atexit as _atexit
+import os as _os
+import threading as _threading
 import weakref as _weakref
 from dataclasses import dataclass as _dataclass
 from typing import TYPE_CHECKING as _TYPE_CHECKING
@@ -33,7 +35,7 @@ __all__ = [
 
 if _TYPE_CHECKING:  # at run time they would be names of this module
     import os
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from collections.abc import Sequence as _Sequence
     from typing import Any, Literal
 
@@ -43,6 +45,8 @@ if _TYPE_CHECKING:  # at run time they would be names of this module
     _Path = str | os.PathLike[str]
     _Image = NDArray[np.uint8] | NDArray[np.uint16] | NDArray[np.float32]
     _Range = tuple[int, int] | str
+    _Source = _Path | _Sequence[_Image | _Path] | None
+    _Pairs = _Path | Iterable[tuple[_Image | _Path, _Image | _Path]] | None
     _Rig = Calibration | _Path | None
     _Map = NDArray[np.float32] | NDArray[np.float64]
     _Mask = NDArray[np.bool_] | NDArray[np.uint8]
@@ -363,6 +367,16 @@ class Sequence:
     results in metres, as for `vantage run`. poses: file of a trajectory.
     in_flight: frames that are computed ahead or wait, 1 to 64; default: threads + 2.
 
+    pairs: the path of a list, or an iterable of (left, right), each an array or the path of an
+    image: a camera, a queue, a generator. A thread of its own goes through it and copies the
+    images, at most in_flight pairs ahead; exceptions of it are raised here, after the frames before
+    it. Rows and disparities="auto" are found in the first pair. Values "shot" and frames are
+    refused. left and right may be lists of images, too. len() is that of the iterable, or a
+    TypeError.
+    live: of an iterable: one frame in flight, always of the newest pair; those that came meanwhile
+    are dropped, and dropped is their number after a loop.
+    bgr: arrays that are given and those of frames have this order instead of RGB.
+
     Maps are those that `vantage run` writes. Frames are read, matched and rendered in other threads
     while the loop works. Leaving the loop, an exception in it or Ctrl-C ends them. Iterating starts
     at the first frame each time. Raises Error at the first bad frame, after all frames before it;
@@ -371,11 +385,17 @@ class Sequence:
     After a loop, skipped is a list of (index, reason) of the frames left out.
     """
 
-    def __init__(self, left: _Path | None = None, right: _Path | None = None, *,
+    def __init__(self, left: _Source = None, right: _Source = None, *, pairs: _Pairs = None,
                  frames: range | slice | str | None = None, calibration: _Rig = None,
                  unrectified: _Rig = None, rectified_pixels: bool = False, preset: _Preset = None,
                  disparities: _Range = "auto", save: str | _Sequence[str] | None = None,
-                 **options: Any) -> None:
+                 live: bool = False, bgr: bool = False, **options: Any) -> None:
+        self._supplied = _supplied_pairs(left, right, pairs)
+        if self._supplied is not None:
+            left = right = pairs = None
+            if frames is not None:
+                raise UsageError("frames is given, but pairs are an iterable, expected "
+                                 "itertools.islice of it")
         if save is not None:
             names = save.split(",") if isinstance(save, str) else save
             options["save"] = [name.replace("_", "-") for name in names]
@@ -386,11 +406,14 @@ class Sequence:
         self._native = _vantage.Sequence(
             _calibration_of(calibration if unrectified is None else unrectified,
                             [side for side in (left, right) if side is not None]),
-            unrectified is not None,
-            {"left": left, "right": right, "preset": preset, "disparities": disparities,
-             "rectified_pixels": rectified_pixels or None, **options})
-        self._frames = self._chosen(frames)
+            unrectified is not None, self._supplied is not None, bool(bgr),
+            {"left": left, "right": right, "pairs": pairs, "preset": preset,
+             "disparities": disparities, "rectified_pixels": rectified_pixels or None,
+             "live": live or None, **options})
+        self._bgr = bool(bgr)
+        self._frames = self._supplied if self._supplied is not None else self._chosen(frames)
         self.skipped = []
+        self.dropped = 0
 
     def _chosen(self, frames):
         count = len(self._native)
@@ -408,11 +431,33 @@ class Sequence:
     def __len__(self) -> int:
         return len(self._frames)
 
+    def __bool__(self) -> bool:
+        return not hasattr(self._frames, "__len__") or len(self._frames) > 0
+
     def __repr__(self):
-        return f"<vantage.Sequence: {len(self)} frames>"
+        known = hasattr(self._frames, "__len__")
+        return f"<vantage.Sequence: {len(self) if known else 'unknown number of'} frames>"
 
     def __iter__(self) -> Iterator[Frame]:
-        loop = self._native.loop(list(self._frames))
+        if self._supplied is None:
+            yield from self._frames_of(self._native.loop(list(self._frames)))
+            return
+        feed = self._native.feed()
+        problems = []
+        puller = _threading.Thread(target=_pull, name="vantage pairs", daemon=True,
+                                   args=(iter(self._supplied), feed, self._bgr, problems))
+        puller.start()
+        try:
+            loop = self._native.loop_over(feed)  # waits for the first pair
+            if loop is not None:
+                yield from self._frames_of(loop)
+        finally:
+            feed.close()
+            puller.join(1)  # it may wait in the iterable, which then ends later or never
+        if problems:
+            raise problems[0]
+
+    def _frames_of(self, loop):
         _loops.add(loop)
         try:
             while (found := loop.next()) is not None:
@@ -420,6 +465,51 @@ class Sequence:
         finally:
             loop.close()
             self.skipped = loop.skipped()
+            self.dropped = loop.dropped()
+
+
+def _is_path(value):
+    return isinstance(value, (str, bytes, _os.PathLike))
+
+
+def _supplied_pairs(left, right, pairs):
+    """The iterable of pairs; None where inputs are files."""
+    sides = {name: side for name, side in [("left", left), ("right", right)] if side is not None}
+    if pairs is not None and not _is_path(pairs):
+        if sides:
+            raise UsageError(f"pairs and {next(iter(sides))} are given, expected one of them")
+        is_iterable = hasattr(pairs, "__iter__") or hasattr(pairs, "__getitem__")
+        if not is_iterable or isinstance(pairs, _np.ndarray):
+            raise TypeError(f"pairs is of type {type(pairs).__name__}, expected a path or an "
+                            "iterable of (left, right)")
+        return pairs
+    for name, side in sides.items():
+        if not _is_path(side) and not isinstance(side, (list, tuple)):
+            raise TypeError(f"{name} is of type {type(side).__name__}, expected a path or a list "
+                            "of images (a single pair: Matcher.compute)")
+    if all(_is_path(side) for side in sides.values()):
+        return None
+    if pairs is not None or len(sides) != 2 or any(_is_path(side) for side in sides.values()):
+        raise UsageError("a list of images is given, expected one for left and one for right")
+    if len(left) != len(right):
+        raise UsageError(f"left has {len(left)} images but right {len(right)}, expected as many")
+    return list(zip(left, right))
+
+
+def _pull(pairs, feed, bgr, problems):
+    """The work of the thread that goes through an iterable of pairs."""
+    try:
+        for number, pair in enumerate(pairs):
+            if not isinstance(pair, (tuple, list)) or len(pair) != 2:
+                raise TypeError(f"pair {number} is of type {type(pair).__name__}, expected "
+                                "(left, right)")
+            if not feed.put(*(read_image(side, bgr=bgr) if _is_path(side) else side
+                              for side in pair)):
+                break
+    except BaseException as problem:  # raised by the loop
+        problems.append(problem)
+    finally:
+        feed.end()
 
 
 @_atexit.register

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstddef>
+
 #include "engine/error.h"
 
 namespace vantage {
@@ -62,11 +64,12 @@ bool LivePairs::fetch(FramePair& pair) {
   if (has_newest_) {
     std::swap(pair, newest_);
     has_newest_ = false;
-    last_fetched_ = pair.index;
+    numbers_[static_cast<std::size_t>(fetched_++ % 2)] = pair.index;
     return true;
   }
   if (problem_) {
-    ++last_fetched_;
+    const int last = fetched_ == 0 ? -1 : numbers_[static_cast<std::size_t>((fetched_ - 1) % 2)];
+    numbers_[static_cast<std::size_t>(fetched_++ % 2)] = last + 1;
     changed_.notify_all();
     std::rethrow_exception(std::exchange(problem_, nullptr));
   }
@@ -97,7 +100,7 @@ std::string LivePairs::describe(int index) const {
     return source_->describe(index);
   }
   const std::scoped_lock lock(mutex_);
-  return source_->describe(last_fetched_);
+  return source_->describe(numbers_[static_cast<std::size_t>(index % 2)]);
 }
 
 }  // namespace vantage

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -32,8 +33,9 @@ class LivePairs final : public ForwardedPairs {
   void forget_start() override;
   bool is_ready(std::chrono::milliseconds longest) override;
   [[nodiscard]] int dropped_pairs() const override;
-  /// Of the pair that was fetched last: one is in work at a time.
+  /// `index`: of the results, one of the last two that were fetched.
   [[nodiscard]] std::string describe(int index) const override;
+  [[nodiscard]] const WhiteLevel& white_level() const override { return source_->white_level(); }
 
  private:
   void read_all();
@@ -48,7 +50,8 @@ class LivePairs final : public ForwardedPairs {
   bool has_ended_ = false;
   bool is_closed_ = false;
   int dropped_ = 0;
-  int last_fetched_ = -1;
+  int fetched_ = 0;                  ///< pairs
+  std::array<int, 2> numbers_ = {};  ///< in the stream, of the last two of these
 
   std::thread reader_;  ///< from forget_start() on it alone uses the source
 };
