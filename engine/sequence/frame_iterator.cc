@@ -120,7 +120,8 @@ class FrameIterator::Work final : private FrameFlow {
 
   bool may_continue() {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return is_stopped_ || ahead_ <= run().in_flight / 2; });
+    changed_.wait(lock,
+                  [&] { return is_stopped_ || is_at_end() || ahead_ <= run().in_flight / 2; });
     lock.unlock();
     while (!is_stopped_ && !is_at_end() && !run().pairs.is_ready(kLookInterval)) {
     }
