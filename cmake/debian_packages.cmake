@@ -14,7 +14,7 @@ function(depends_of_late_libraries variable)
   get_target_property(imgcodecs opencv_imgcodecs LOCATION)
   get_target_property(video opencv_video LOCATION)
   set(packages "")
-  foreach(library IN ITEMS ${imgcodecs} ${video} ${libav_codecs_LINK_LIBRARIES})
+  foreach(library IN ITEMS ${imgcodecs} ${video} ${TIFF_LIBRARY} ${libav_codecs_LINK_LIBRARIES})
     file(REAL_PATH ${library} file)
     cmake_path(GET file FILENAME name)
     execute_process(COMMAND dpkg-query -S "*/${name}"

@@ -10,9 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "engine/image/left_out.h"
 #include "engine/io/images/preview.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/options/given_map_settings.h"
+#include "engine/options/pair_source_settings.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
@@ -26,9 +28,17 @@ namespace {
 
 ChannelOrder order_of(bool bgr) { return bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb; }
 
-py::array read_image(const py::object& path, bool bgr) {
+py::array read_image(const py::object& path, bool bgr, const py::dict& options) {
   const std::string file = path_of(path);
-  return array_of(without_gil([&] { return read_photograph(file); }), order_of(bgr));
+  PhotographReading reading;
+  Settings settings;
+  add_reading_settings(settings, reading);
+  set_options(settings, options);
+  Photograph photograph = without_gil([&] { return read_photograph(file, reading); });
+  if (auto* const floats = std::get_if<Image<float>>(&photograph.pixels)) {
+    erase_left_out(photograph.left_out, *floats);  // NaN again, as in the file
+  }
+  return array_of(std::move(photograph), order_of(bgr));
 }
 
 void write_image(const py::object& path, const py::object& image, bool bgr) {

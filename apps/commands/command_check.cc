@@ -15,6 +15,7 @@
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/image/stereo_packing.h"
+#include "engine/io/images/stereo_jpeg.h"
 #include "engine/jobs/sequence_session.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
@@ -76,6 +77,7 @@ void add_check_settings(Settings& settings, CheckJob& job) {
   add_kitti_cameras_setting(settings, job.kitti_cameras);
   add_scene_mask_settings(settings, job.input.masks, true);
   add_white_level_setting(settings, job.input.white_level);
+  add_reading_settings(settings, job.input.reading);
   add_match_settings(settings, job.sequence.match);
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
@@ -93,11 +95,13 @@ void check(CheckJob& job, const Settings& settings) {
     settings.refuse_idle({"packing"}, "with two images or sequences");
     job.input.left = job.left;
     job.input.right = job.right;
-  } else if (job.input.packing) {
+  } else if (job.input.packing || is_stereo_jpeg(job.left)) {
     job.input.stereo = job.left;
   } else {
     throw UsageError(
-        "RIGHT is missing; for pictures that hold both images give --packing, such as sbsl");
+        "RIGHT is missing; for pictures that hold both images, but MPO and JPS, give --packing, "
+        "such "
+        "as sbsl");
   }
   job.input.validate();
   job.sequence.match.validate();

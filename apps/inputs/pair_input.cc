@@ -8,6 +8,7 @@
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/inputs/given_maps.h"
 #include "apps/inputs/kitti_cameras_choice.h"
+#include "apps/inputs/stereo_file.h"
 #include "apps/reports/remarks.h"
 #include "engine/error.h"
 #include "engine/image/orientation.h"
@@ -55,7 +56,8 @@ RectifiedPair rectify(const StereoCalibration& calibration, const RectificationO
 
 void add_pair_settings(Settings& settings, PairInput& pair) {
   settings.positional("left", pair.left, "Left image").required = true;
-  settings.positional("right", pair.right, "Right image of the same size").required = true;
+  settings.positional("right", pair.right,
+                      "Right image of the same size; none: LEFT is an MPO or JPS file with both");
   settings.input_path("left-disparity", pair.left_disparity, "FILE",
                       "Disparity map of the left image; without maps, the pair is matched");
   settings.input_path("right-disparity", pair.right_disparity, "FILE",
@@ -108,6 +110,7 @@ SettingValue reported_settings(const Settings& settings, const PairInput& pair) 
 
 PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOptions& common,
                        Execution& execution, RunReport& report) {
+  name_views(pair.left, pair.right);
   PairWithMaps result;
   report.timed_file_access("read", [&] {
     result.left = read_photograph(pair.left, pair.reading);

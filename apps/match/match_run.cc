@@ -12,6 +12,7 @@
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/inputs/kitti_cameras_choice.h"
 #include "apps/inputs/rectification_check.h"
+#include "apps/inputs/stereo_file.h"
 #include "apps/match/match_outputs.h"
 #include "apps/match/vertical_pair.h"
 #include "apps/process/command_work.h"
@@ -299,6 +300,7 @@ void print_results(const MatchJob& job, scheduler::Extent size, const DepthFiles
 }  // namespace
 
 int run_match(MatchJob& job, const Settings& settings) {
+  name_views(job.left, job.right);
   check(job, settings);
   const std::vector<std::string> files = job.inputs();
   choose_kitti_cameras(

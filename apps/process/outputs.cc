@@ -11,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/numbered_part.h"
 #include "engine/io/maps/map_formats.h"
 
 namespace vantage::apps {
@@ -113,10 +114,11 @@ std::vector<fs::path> FileChecks::folders_of(const fs::path& path) {
   return folders;
 }
 
-void FileChecks::add_input(const fs::path& path) {
-  if (path.empty()) {
+void FileChecks::add_input(const fs::path& spec) {
+  if (spec.empty()) {
     return;
   }
+  const fs::path path = numbered_part(spec).file;
   const auto refuse = [&](const Output& output) {
     throw UsageError(
         fmt::format("{} is '{}', which is also an input", output.option, output.path.string()));

@@ -1,5 +1,7 @@
 #include "engine/image/left_out.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,6 +13,8 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "engine/error.h"
 
 namespace vantage {
 namespace {
@@ -74,9 +78,47 @@ void fill_image(const Mask& left_out, Image<T>& image) {
 }  // namespace
 
 void leave_out(Photograph& photograph, Mask left_out) {
-  photograph.left_out = share_of(left_out) > 0 ? std::move(left_out) : Mask();
+  if (share_of(left_out) == 0) {
+    return;
+  }
   if (!photograph.left_out.empty()) {
-    std::visit([&](auto& image) { fill_image(photograph.left_out, image); }, photograph.pixels);
+    cv::Mat all = as_mat<std::uint8_t>(left_out.view());
+    cv::bitwise_or(all, as_mat<std::uint8_t>(std::as_const(photograph.left_out).view()), all);
+  }
+  photograph.left_out = std::move(left_out);
+  std::visit([&](auto& image) { fill_image(photograph.left_out, image); }, photograph.pixels);
+}
+
+void leave_out_no_data(Photograph& photograph, std::optional<double> no_data) {
+  Mask without_data = std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        const int channels = image.channels();
+        const auto is_no_data = [&](T value) { return no_data && value == *no_data; };
+        const auto is_nan = [](T value) { return value != value; };
+        Mask mask(image.width(), image.height());
+        for (int y = 0; y < image.height(); ++y) {
+          for (int x = 0; x < image.width(); ++x) {
+            const T* pixel = image.row(y) + x * channels;
+            mask.at(x, y) = std::any_of(pixel, pixel + channels, is_nan) ||
+                                    std::all_of(pixel, pixel + channels, is_no_data)
+                                ? kSet
+                                : 0;
+          }
+        }
+        return mask;
+      },
+      photograph.pixels);
+  const double share = share_of(without_data);
+  if (share == 1) {
+    throw Error("no pixel has data, expected numbers");
+  }
+  if (share > 0) {
+    leave_out(photograph, std::move(without_data));
+    photograph.origin.remarks.push_back(
+        {Remark::Kind::kNote, "no data",
+         no_data ? fmt::format("pixels without data (NaN, or {:g} as the file says) are left out",
+                               *no_data)
+                 : "pixels without data (NaN) are left out"});
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
 #include "engine/image/image.h"
@@ -14,9 +16,13 @@ namespace vantage {
 /// Marks pixels and gives them values that matching cannot take for texture, and that no filter can
 /// spread: those of the nearest other pixel of their row, the left one of two; rows without such
 /// pixels those of the nearest row that has some, the upper one of two. So maps do not depend on
-/// what was there. Only marks them where no pixel is left. `left_out`: of the photograph's size, or
-/// empty; one without a marked pixel counts as empty.
+/// what was there. Only marks them where no pixel is left. Pixels that are left out already stay
+/// so. `left_out`: of the photograph's size, or empty; one without a marked pixel counts as empty.
 void leave_out(Photograph& photograph, Mask left_out);
+
+/// Leaves out pixels without data, for which a channel is NaN or all are `no_data`, beside those
+/// that are left out already; its origin then has a remark. Throws Error where no pixel has data.
+void leave_out_no_data(Photograph& photograph, std::optional<double> no_data = {});
 
 /// 0 in all channels where a pixel is left out, which files have instead of a mask.
 void blacken_left_out(Photograph& photograph);

@@ -12,6 +12,9 @@ struct PhotographReading {
   /// Of files with other channels than grey, RGB and alpha: the band that is read, counted from 1.
   /// Empty: see read_photograph().
   std::optional<int> band = {};
+  /// Of files of several pictures, counted from 0: pages of TIFF, views of MPO and JPS. Empty: the
+  /// first page or view; a JPS file whole.
+  std::optional<int> page = {};
 
   friend bool operator==(const PhotographReading&, const PhotographReading&) = default;
 };

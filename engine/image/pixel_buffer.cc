@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/left_out.h"
 #include "kernels/colour_order/colour_order.h"
 
 namespace vantage {
@@ -68,19 +69,25 @@ bool is_like_image(const PixelBuffer<T>& buffer) {
          (buffer.height_px == 1 || buffer.row_bytes >= row_bytes);
 }
 
+/// Throws Error for infinity.
 template <typename T>
-void require_finite(const Image<T>& image) {
+bool has_nan(const Image<T>& image) {
+  bool has_any = false;
   if constexpr (std::is_floating_point_v<T>) {
     const int values = image.width() * image.channels();
     for (int y = 0; y < image.height(); ++y) {
       for (int i = 0; i < values; ++i) {
-        if (!std::isfinite(image.row(y)[i])) {
-          throw Error(fmt::format("the image is {} at pixel ({}, {}), expected finite values",
-                                  image.row(y)[i], i / image.channels(), y));
+        const T value = image.row(y)[i];
+        if (std::isinf(value)) {
+          throw Error(
+              fmt::format("the image is {} at pixel ({}, {}), expected finite values or NaN", value,
+                          i / image.channels(), y));
         }
+        has_any = has_any || std::isnan(value);
       }
     }
   }
+  return has_any;
 }
 
 template <typename T>
@@ -108,8 +115,12 @@ Photograph copy_of(const PixelBuffer<T>& buffer) {
       }
     }
   }
-  require_finite(image);
-  return {std::move(image)};
+  const bool has_gaps = has_nan(image);
+  Photograph photograph{std::move(image)};
+  if (has_gaps) {
+    leave_out_no_data(photograph);
+  }
+  return photograph;
 }
 
 }  // namespace
@@ -124,8 +135,7 @@ Photograph photograph_of(const PixelBuffer<T>& given) {
   Image<T> image =
       Image<T>::borrowed({buffer.data, buffer.width_px, buffer.height_px, buffer.channels,
                           static_cast<std::size_t>(buffer.row_bytes) / sizeof(T)});
-  require_finite(image);
-  return {std::move(image)};
+  return has_nan(image) ? copy_of(buffer) : Photograph{std::move(image)};
 }
 
 template <typename T>

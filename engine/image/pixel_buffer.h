@@ -31,8 +31,9 @@ struct PixelBuffer {
 /// A photograph of the pixels of `buffer`. Where they lie in memory as an Image has them (values
 /// and pixels follow each other, in RGB order, rows further on by a multiple of sizeof(T)) it reads
 /// them in place: `buffer` must then outlive it and the photograph must not be written to.
-/// Otherwise it is a copy. Throws Error for a size or a number of channels that no photograph has,
-/// and for floats that are not finite. Thread rule: pure.
+/// Otherwise, and where floats are NaN, it is a copy; those pixels are left out (image/left_out.h).
+/// Throws Error for a size or a number of channels that no photograph has, and for infinity. Thread
+/// rule: pure.
 template <typename T>
 Photograph photograph_of(const PixelBuffer<T>& buffer);
 /// As photograph_of(), but always a copy.

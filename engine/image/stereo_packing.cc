@@ -159,17 +159,20 @@ void unpack_image(const Photograph& packed, StereoPacking packing, bool second, 
                             packed.width(), packed.height(), is_high ? "height" : "width"));
   }
   image.origin = packed.origin;
-  std::visit(
-      [&]<typename T>(const Image<T>& pixels) {
-        Image<T>& result = pixels_of<T>(image);
-        if (packing.layout == StereoLayout::kColumns) {
-          result.resize(pixels.width() / 2, pixels.height(), pixels.channels());
-          copy_columns<T>(pixels.view(), {second ? 1 : 0, 2}, result.view(), {}, result.width());
-        } else {
-          unpack_half(part_of(pixels.view(), packing.layout, second), packing, result);
-        }
-      },
-      packed.pixels);
+  const auto unpack = [&]<typename T>(const Image<T>& pixels, Image<T>& result) {
+    if (packing.layout == StereoLayout::kColumns) {
+      result.resize(pixels.width() / 2, pixels.height(), pixels.channels());
+      copy_columns<T>(pixels.view(), {second ? 1 : 0, 2}, result.view(), {}, result.width());
+    } else {
+      unpack_half(part_of(pixels.view(), packing.layout, second), packing, result);
+    }
+  };
+  std::visit([&]<typename T>(const Image<T>& pixels) { unpack(pixels, pixels_of<T>(image)); },
+             packed.pixels);
+  image.left_out = {};
+  if (!packed.left_out.empty()) {
+    unpack(packed.left_out, image.left_out);
+  }
 }
 
 template <typename T>

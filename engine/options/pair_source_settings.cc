@@ -78,6 +78,9 @@ void add_reading_settings(Settings& settings, PhotographReading& reading) {
                         {{"upright", true}, {"stored", false}},
                         "Turn images as their EXIF orientation, or the display matrix of a film, "
                         "says; or leave them as they are stored");
+  settings.integer("band", reading.band, "N",
+                   "Read band N, counted from 1, of images of several; auto: grey or RGB, of other "
+                   "bands their mean");
 }
 
 void add_white_level_setting(Settings& settings, std::optional<double>& white_level) {

@@ -127,6 +127,7 @@ void Rectifier::apply(const Photograph& source, Side side, Photograph& result,
         });
       },
       source.pixels);
+  result.left_out = {};
   leave_out(result, left_out_of(source, side, execution));
 }
 

@@ -519,9 +519,14 @@ def _end_loops():
         loop.close()
 
 
-def read_image(path: _Path, *, bgr: bool = False) -> NDArray[Any]:
-    """Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR or PFM: uint8, uint16 or float32."""
-    return _vantage.read_image(path, bool(bgr))
+def read_image(path: _Path, *, bgr: bool = False, **options: Any) -> NDArray[Any]:
+    """Reads PNG, JPEG, TIFF, JPEG 2000, PNM, BMP, WebP, EXR or PFM: uint8, uint16 or float32.
+
+    "scan.tif#2" is page 2 of a TIFF, "photo.mpo#1" the right view of an MPO or JPS, counted from 0.
+    The image is turned as its EXIF orientation says. options: orientation="stored" leaves it as it
+    is, band=N reads one band, counted from 1. Floats are NaN where the file has no data.
+    """
+    return _vantage.read_image(path, bool(bgr), options)
 
 
 def write_image(path: _Path, image: _Image, *, bgr: bool = False) -> None:

@@ -169,7 +169,7 @@ TEST(StatedWhiteLevel, IsReadFromTiffTags) {
   const std::size_t entry = 8 + 2 + 9 * 12;  // of five values, far beyond the end
   beyond[entry + 4] = 5;
   beyond[entry + 10] = 200;
-  EXPECT_THAT(error_of([&] { stated_by(beyond, "a.tif"); }), HasSubstr("a.tif: is truncated"));
+  EXPECT_EQ(stated_by(beyond, "a.tif"), std::nullopt);  // as if the tag were not there
 }
 
 TEST(StatedWhiteLevel, IsReadFromPng) {

@@ -18,23 +18,12 @@ namespace {
 constexpr std::endian kLittle = std::endian::little;
 constexpr std::endian kBig = std::endian::big;
 
+constexpr std::string_view kCodestream("\xFF\x4F\xFF\x51", 4);
+
 /// Two bytes of a run are at most 255 pixels.
 constexpr long long kMaxRunPixelsPerByte = 128;
-/// Each 8×8 block takes at least one bit of Huffman code. Doubled, because components may be
-/// subsampled.
-constexpr long long kMaxJpegPixelsPerByte = 1024;
 /// Arithmetic code has no such minimum; this is far beyond what photographs reach.
 constexpr long long kMaxArithmeticPixelsPerByte = 65536;
-
-/// Checked before allocation: a few bytes must not allocate gigabytes. `min_bytes`: what an image
-/// takes at least.
-void check_holds_pixels(const FileBytes& file, long long width, long long height,
-                        long long min_bytes) {
-  if (min_bytes > static_cast<long long>(file.size())) {
-    file.fail(fmt::format("is damaged, {} bytes cannot hold the {}x{} pixels of its header",
-                          file.size(), width, height));
-  }
-}
 
 void check_bmp(const FileBytes& file) {
   const auto header_bytes = file.integer<std::uint32_t>(14, kLittle);
@@ -112,92 +101,6 @@ Orientation check_jpeg(const FileBytes& file) {
     file.fail("is damaged, expected a JPEG frame header and a scan");
   }
   return orientation;
-}
-
-/// Bytes that a byte of TIFF data can stand for; empty: no limit is known.
-std::optional<long long> max_tiff_bytes_per_byte(int compression, long long pixel_bytes) {
-  switch (compression) {
-    case 1:  // none
-      return 1;
-    case 5:  // LZW: codes of 12 bits for strings of at most 3838 bytes
-      return 2559;
-    case 7:
-      return kMaxJpegPixelsPerByte * pixel_bytes;
-    case 8:
-    case 32946:  // deflate
-      return 1032;
-    case 32773:  // PackBits: two bytes for a run of at most 128
-      return 64;
-    default:
-      return std::nullopt;
-  }
-}
-
-/// The first directory of a classic TIFF file. libtiff checks what it reads itself. Returns what
-/// the file states as white: WhiteLevel (of DNG), else 2ⁿ − 1 of the bits of MaxSampleValue.
-/// Decoders scale 10, 12 and 14 bits to 16.
-StatedByFile check_tiff(const FileBytes& file) {
-  const std::endian order = file.has_at(0, "II") ? kLittle : kBig;
-  if (file.integer<std::uint16_t>(2, order) != 42) {
-    file.fail("is a BigTIFF file, expected classic TIFF");
-  }
-  const std::size_t directory = file.integer<std::uint32_t>(4, order);
-  const int entries = file.integer<std::uint16_t>(directory, order);
-  long long width = 0;
-  long long height = 0;
-  long long samples = 1;
-  long long bits = 1;
-  int compression = 1;
-  bool is_subsampled = false;
-  long long white = 0;
-  long long max_sample = 0;
-  // One number per sample; more than two do not fit into the entry.
-  const auto first_short = [&](std::size_t entry, long long value) -> long long {
-    const bool is_elsewhere = file.integer<std::uint32_t>(entry + 4, order) > 2;
-    return is_elsewhere
-               ? file.integer<std::uint16_t>(file.integer<std::uint32_t>(entry + 8, order), order)
-               : value;
-  };
-  for (int i = 0; i < entries; ++i) {
-    const std::size_t entry = directory + 2 + 12 * static_cast<std::size_t>(i);
-    const int tag = file.integer<std::uint16_t>(entry, order);
-    const bool is_short = file.integer<std::uint16_t>(entry + 2, order) == 3;
-    const long long value = is_short ? file.integer<std::uint16_t>(entry + 8, order)
-                                     : file.integer<std::uint32_t>(entry + 8, order);
-    if (tag == 256) {
-      width = value;
-    } else if (tag == 257) {
-      height = value;
-    } else if (tag == 258) {
-      bits = first_short(entry, value);
-    } else if (tag == 281) {
-      max_sample = first_short(entry, value);
-    } else if (tag == 50717) {
-      white = first_short(entry, value);
-    } else if (tag == 259) {
-      compression = static_cast<int>(value);
-    } else if (tag == 262) {
-      is_subsampled = value == 6;
-    } else if (tag == 277) {
-      samples = value;
-    }
-  }
-  file.check_dimensions(width, height);
-  if (bits > 64 || samples > 64) {
-    file.fail(fmt::format("has {} samples of {} bits per pixel, expected at most 64 of each",
-                          samples, bits));
-  }
-  const long long pixel_bits = is_subsampled ? bits : bits * samples;
-  if (const auto max = max_tiff_bytes_per_byte(compression, (pixel_bits + 7) / 8)) {
-    check_holds_pixels(file, width, height, width * height * pixel_bits / 8 / *max);
-  }
-  if (bits > 8 && bits < 16) {
-    return {.white_level = 65535};
-  }
-  white = white == 0 && max_sample > 0 && max_sample < 65535
-              ? (1LL << std::bit_width(static_cast<unsigned>(max_sample))) - 1
-              : white;
-  return {.white_level = white > 0 && white < 65535 ? std::optional<double>(white) : std::nullopt};
 }
 
 Orientation check_webp(const FileBytes& file) {
@@ -287,7 +190,90 @@ void check_exr(const FileBytes& file) {
   }
 }
 
+/// The size in the codestream, which begins with its markers SOC and SIZ. In a JP2 file boxes come
+/// before it.
+void check_jpeg2000(const FileBytes& file) {
+  std::size_t offset = 0;
+  while (!file.has_at(offset, kCodestream)) {
+    const bool is_codestream_box = file.has_at(offset + 4, "jp2c");
+    std::size_t header = 8;
+    std::size_t length = file.integer<std::uint32_t>(offset, kBig);
+    if (length == 1) {
+      header = 16;
+      length = file.integer<std::uint64_t>(offset + 8, kBig);
+    }
+    if (!is_codestream_box && length < header) {
+      file.fail("is damaged, its JPEG 2000 boxes hold no codestream");
+    }
+    offset += is_codestream_box ? header : length;
+    (void)file.part(offset, kCodestream.size());
+    if (is_codestream_box && !file.has_at(offset, kCodestream)) {
+      file.fail("is damaged, its JPEG 2000 codestream has no header");
+    }
+  }
+  const auto number = [&](std::size_t at) {
+    return static_cast<long long>(file.integer<std::uint32_t>(offset + at, kBig));
+  };
+  const long long width = number(8) - number(16);
+  const long long height = number(12) - number(20);
+  file.check_dimensions(width, height);
+  check_holds_pixels(file, width, height, width * height / kMaxArithmeticPixelsPerByte);
+}
+
+/// Formats that users have, and that are not read, by what their files hold at `offset`.
+struct OtherFormat {
+  std::size_t offset;
+  std::string_view bytes;
+  std::string_view name;
+  std::string_view remedy;
+};
+constexpr std::string_view kConvert = "convert it to PNG, for example with ffmpeg -i FILE FILE.png";
+constexpr std::string_view kHeifConvert = "convert it to PNG, for example with heif-convert";
+constexpr std::string_view kFilm = "'vantage run' reads films";
+constexpr OtherFormat kOtherFormats[] = {
+    {4, "ftypavif", "AVIF", kConvert},
+    {4, "ftypavis", "AVIF", kConvert},
+    {4, "ftyphei", "HEIC", kHeifConvert},
+    {4, "ftyphev", "HEIC", kHeifConvert},
+    {4, "ftypmif1", "HEIF", kHeifConvert},
+    {4, "ftypmsf1", "HEIF", kHeifConvert},
+    {4, "JXL ", "JPEG XL", "convert it to PNG, for example with djxl"},
+    {0, "\xFF\x0A", "JPEG XL", "convert it to PNG, for example with djxl"},
+    {0, "GIF8", "GIF", kConvert},
+    {0, "SDPX", "DPX", kConvert},
+    {0, "XPDS", "DPX", kConvert},
+    {0, "8BPS", "Photoshop", kConvert},
+    {0, "#?R", "Radiance HDR", "convert it to EXR or PFM"},
+    {0, "SIMPLE  =", "FITS", "convert it to TIFF"},
+    {0, "II\xBC\x01", "JPEG XR", kConvert},
+    {4, "ftyp", "a film (MP4)", kFilm},
+    {0, "\x1A\x45\xDF\xA3", "a film (Matroska)", kFilm},
+};
+
+[[noreturn]] void fail_as_unknown(const FileBytes& file) {
+  const auto refuse = [&](std::string_view name, std::string_view remedy) {
+    file.fail(fmt::format("is {}, which is not read as an image; {}", name, remedy));
+  };
+  for (const OtherFormat& other : kOtherFormats) {
+    if (file.has_at(other.offset, other.bytes)) {
+      refuse(other.name, other.remedy);
+    }
+  }
+  if (lower_case_extension(file.name()) == ".tga") {  // begins with nothing of its own
+    refuse("TGA", kConvert);
+  }
+  file.fail("is not an image, expected PNG, JPEG, TIFF, JPEG 2000, PNM, PFM, BMP, WebP or EXR");
+}
+
 }  // namespace
+
+void check_holds_pixels(const FileBytes& file, long long width, long long height,
+                        long long min_bytes) {
+  if (min_bytes > static_cast<long long>(file.size())) {
+    file.fail(fmt::format("is damaged, {} bytes cannot hold the {}x{} pixels of its header",
+                          file.size(), width, height));
+  }
+}
 
 ImageFormat detect_image_format(const FileBytes& file) {
   using std::string_view_literals::operator""sv;
@@ -316,7 +302,10 @@ ImageFormat detect_image_format(const FileBytes& file) {
   if (file.has_at(0, "\x76\x2F\x31\x01")) {
     return ImageFormat::kExr;
   }
-  file.fail("is not an image, expected PNG, JPEG, TIFF, PNM, PFM, BMP, WebP or EXR");
+  if (file.has_at(0, kCodestream) || file.has_at(4, "jP  \r\n\x87\n")) {
+    return ImageFormat::kJpeg2000;
+  }
+  fail_as_unknown(file);
 }
 
 StatedByFile check_image_header(const FileBytes& file, ImageFormat format) {
@@ -326,13 +315,15 @@ StatedByFile check_image_header(const FileBytes& file, ImageFormat format) {
       break;
     case ImageFormat::kJpeg:
       return {.orientation = check_jpeg(file)};
-    case ImageFormat::kTiff:
-      return check_tiff(file);
     case ImageFormat::kWebp:
       return {.orientation = check_webp(file)};
     case ImageFormat::kExr:
       check_exr(file);
       break;
+    case ImageFormat::kJpeg2000:
+      check_jpeg2000(file);
+      break;
+    case ImageFormat::kTiff:
     case ImageFormat::kPng:
     case ImageFormat::kPnm:
     case ImageFormat::kPfm:

@@ -14,16 +14,19 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/left_out.h"
 #include "engine/image/orientation.h"
 #include "engine/image/white_level.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/numbered_part.h"
 #include "engine/io/images/image_header.h"
-#include "engine/io/images/jpeg_decoder.h"
 #include "engine/io/images/netpbm.h"
 #include "engine/io/images/opencv_setup.h"
 #include "engine/io/images/png_decoder.h"
 #include "engine/io/images/png_encoder.h"
+#include "engine/io/images/stereo_jpeg.h"
+#include "engine/io/images/tiff_decoder.h"
 
 namespace vantage {
 namespace {
@@ -52,9 +55,8 @@ Image<T> from_bgr(const cv::Mat& decoded, Photograph& memory) {
   return image;
 }
 
-/// `signed_bits`: as of DecodedImage.
 Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_t> bytes,
-                              Photograph& memory, int& signed_bits) {
+                              Photograph& memory) {
   prepare_opencv();
   if (bytes.size() > INT_MAX) {
     file.fail(
@@ -77,11 +79,7 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
   if (decoded.channels() != 1 && decoded.channels() != 3 && decoded.channels() != 4) {
     file.fail(fmt::format("has {} channels, expected 1, 3 or 4", decoded.channels()));
   }
-  const int depth = decoded.depth();
-  if (depth == CV_8S || depth == CV_16S || depth == CV_32S) {
-    signed_bits = 8 * static_cast<int>(decoded.elemSize1());
-  }
-  if (depth == CV_64F || signed_bits > 0) {
+  if (decoded.depth() == CV_64F) {
     decoded.convertTo(decoded, CV_32F);
   }
   switch (decoded.depth()) {
@@ -177,6 +175,26 @@ void check_capability(const std::filesystem::path& path, const std::string& exte
   }
 }
 
+/// Makes one band of several the photograph, if it was not chosen yet.
+void take_band(const FileBytes& file, std::optional<int> band, Photograph& photograph) {
+  const int channels = photograph.channels();
+  if (!band || (channels == 1 && *band <= 1)) {
+    return;
+  }
+  if (*band > channels) {
+    file.fail(fmt::format("has {} band{}, expected number {} (`band`) to be one of them", channels,
+                          channels == 1 ? "" : "s", *band));
+  }
+  std::visit(
+      [&]<typename T>(Image<T>& image) {
+        Image<T> grey(image.width(), image.height());
+        cv::Mat target = wrap(grey);
+        cv::extractChannel(wrap(image), target, *band - 1);
+        image = std::move(grey);
+      },
+      photograph.pixels);
+}
+
 DecodedImage decode(const FileBytes& file, const PhotographReading& reading, Photograph& memory) {
   const ImageFormat format = detect_image_format(file);
   DecodedImage result;
@@ -184,10 +202,12 @@ DecodedImage decode(const FileBytes& file, const PhotographReading& reading, Pho
   switch (format) {
     case ImageFormat::kPfm:
       result.photograph.pixels = decode_pfm(file);
-      return result;
+      break;
     case ImageFormat::kPnm: {
       PnmImage pnm = decode_pnm(file);
-      return {std::move(pnm.photograph), pnm.max_value};
+      result.photograph = std::move(pnm.photograph);
+      result.max_value = pnm.max_value;
+      break;
     }
     case ImageFormat::kPng: {
       const PngStructure structure = check_png_structure(file);
@@ -202,29 +222,36 @@ DecodedImage decode(const FileBytes& file, const PhotographReading& reading, Pho
       break;
     }
     case ImageFormat::kJpeg:
-      stated = check_image_header(file, format);
-      result.photograph = decode_jpeg(file, memory);
+      result.photograph = decode_jpeg_view(file, reading, memory, stated);
+      break;
+    case ImageFormat::kTiff:
+      result.photograph = decode_tiff(file, reading, memory, stated);
+      result.signed_bits = stated.signed_bits;
+      result.no_data = stated.no_data;
       break;
     default:
       stated = check_image_header(file, format);
-      result.photograph = decode_with_opencv(file, file.all(), memory, result.signed_bits);
-      result.photograph.origin.white_level = stated.white_level;
+      result.photograph = decode_with_opencv(file, file.all(), memory);
+  }
+  if (format != ImageFormat::kTiff || result.photograph.channels() > 1) {
+    take_band(file, reading.band, result.photograph);
   }
   if (reading.turns_upright) {
     turn_upright(result.photograph, stated.orientation);
   }
-  if (std::holds_alternative<Image<std::uint16_t>>(result.photograph.pixels)) {
+  if (format != ImageFormat::kPnm &&
+      std::holds_alternative<Image<std::uint16_t>>(result.photograph.pixels)) {
     result.max_value = 65535;
   }
   return result;
 }
 
-void check_finite(const FileBytes& file, const Image<float>& image) {
+void refuse_infinity(const FileBytes& file, const Image<float>& image) {
   for (int y = 0; y < image.height(); ++y) {
     const float* row = image.row(y);
     for (int i = 0; i < image.width() * image.channels(); ++i) {
-      if (!std::isfinite(row[i])) {
-        file.fail(fmt::format("its value at pixel ({}, {}) is {}, expected finite values",
+      if (std::isinf(row[i])) {
+        file.fail(fmt::format("its value at pixel ({}, {}) is {}, expected finite values or NaN",
                               i / image.channels(), y, row[i]));
       }
     }
@@ -276,14 +303,24 @@ void encode_photograph(const std::filesystem::path& path, const Photograph& phot
 
 Photograph read_photograph(const std::filesystem::path& path, const PhotographReading& reading,
                            Photograph memory) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
-  const FileBytes file(bytes, path.string());
-  DecodedImage stored = decode_image(file, reading, std::move(memory));
-  if (stored.signed_bits > 0) {
-    file.fail("holds integers with a sign, expected unsigned 8-bit, unsigned 16-bit or float");
+  const NumberedPart part = numbered_part(path);
+  const std::vector<std::uint8_t> bytes = read_file_bytes(part.file);
+  const FileBytes file(bytes, part.file.string());
+  PhotographReading of_part = reading;
+  of_part.page = part.number ? part.number : reading.page;
+  DecodedImage stored = decode_image(file, of_part, std::move(memory));
+  const auto* const floats = std::get_if<Image<float>>(&stored.photograph.pixels);
+  if (floats != nullptr) {
+    refuse_infinity(file, *floats);
   }
-  if (const auto* floats = std::get_if<Image<float>>(&stored.photograph.pixels)) {
-    check_finite(file, *floats);
+  if (floats != nullptr || stored.no_data) {
+    try {
+      leave_out_no_data(stored.photograph, stored.no_data);
+    } catch (const Error& error) {
+      file.fail(error.what());
+    }
+  }
+  if (floats != nullptr) {
     return std::move(stored.photograph);
   }
   // PNM files may define white as 1023, for example. Many say 65535 whatever their values are.

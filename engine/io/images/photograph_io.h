@@ -16,6 +16,7 @@ struct DecodedImage {
   Photograph photograph;
   int max_value = 255;  ///< of integer values
   int signed_bits = 0;  ///< floats were stored as signed integers of so many bits; 0: they were not
+  std::optional<double> no_data = {};  ///< the value of pixels without data, where the file has one
 };
 
 /// Decodes an image of any format that read_photograph() supports. Reuses `memory` if it has the
@@ -30,12 +31,14 @@ void encode_photograph(const std::filesystem::path& path, const Photograph& phot
                        std::vector<std::uint8_t>& bytes);
 
 /// Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR (by OpenCV) and PFM: 8-bit, 16-bit and float; grey,
-/// RGB or RGBA. The file's content determines the format, not its name; PNM values are stretched
+/// RGB or RGBA. The file's content determines the format, not its name. FILE#N is page N of a file
+/// of several, counted from 0 (io/files/numbered_part.h). PNM values are stretched
 /// from the file's maximum value to the type's. Turned as its EXIF orientation (JPEG, PNG, WebP,
 /// TIFF) says; gamma and colour profiles are ignored. Reuses `memory` if it has the photograph's
 /// depth and size. Throws Error naming the file when it is missing, empty, truncated, not an image,
-/// too large according to its header, or float with NaN or infinity. Thread rule: may be called
-/// concurrently.
+/// too large according to its header, or float with infinity. Pixels without data (NaN, or what a
+/// TIFF file states) are left out (image/left_out.h). What was assumed is in the origin's remarks.
+/// Thread rule: may be called concurrently.
 Photograph read_photograph(const std::filesystem::path& path, const PhotographReading& reading = {},
                            Photograph memory = {});
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/io/files/numbered_part.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/image_sequence.h"
 #include "engine/io/video/video_frames.h"
@@ -40,6 +41,13 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
   std::error_code ignored;
   if (fs::is_directory(spec, ignored)) {
     return with_reading(open_image_folder(spec));
+  }
+  // One page of an image file, such as "scan.tif#2".
+  if (const NumberedPart part = numbered_part(spec);
+      part.number && has_image_extension(part.file) && fs::exists(part.file, ignored)) {
+    PhotographReading of_part = reading;
+    of_part.page = part.number;
+    return open_frame_source(part.file.string(), of_part);
   }
   if (fs::exists(spec, ignored)) {
     if (has_image_extension(spec)) {

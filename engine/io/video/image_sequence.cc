@@ -135,9 +135,9 @@ std::unique_ptr<ImageSequence> open_image_glob(const std::string& spec) {
 }
 
 bool has_image_extension(const fs::path& path) {
-  constexpr std::array<std::string_view, 13> kExtensions = {
-      ".png", ".jpg", ".jpeg", ".tif",  ".tiff", ".bmp", ".ppm",
-      ".pgm", ".pnm", ".pbm",  ".webp", ".exr",  ".pfm"};
+  constexpr std::array<std::string_view, 19> kExtensions = {
+      ".png",  ".jpg", ".jpeg", ".tif", ".tiff", ".bmp", ".ppm", ".pgm", ".pnm", ".pbm",
+      ".webp", ".exr", ".pfm",  ".mpo", ".jps",  ".jp2", ".j2k", ".btf", ".tf8"};
   const std::string extension = lower_case_extension(path);
   return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
 }

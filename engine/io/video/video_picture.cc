@@ -92,6 +92,7 @@ void VideoPicture::convert(Photograph& photograph) {
   const LibavFrame frame = std::move(frame_);
   const auto converter = converters_->borrow();
   photograph.origin = {};
+  photograph.left_out = {};
   if (!lossy_codec_.empty()) {
     photograph.origin.coding = coding_of_frame(*frame, lossy_codec_);
   }

@@ -10,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/image/orientation.h"
+#include "engine/io/images/stereo_jpeg.h"
 #include "engine/io/video/image_sequence.h"
 #include "engine/io/video/raw_video.h"
 #include "engine/io/video/stream_input.h"
@@ -117,6 +118,16 @@ std::unique_ptr<PairSource> open_streams(const PairSourceOptions& options) {
                                           false);
 }
 
+/// The pairs of MPO and JPS files, each of which is read for either side.
+std::unique_ptr<PairSource> open_views(const PairSourceOptions& options) {
+  const auto open_view = [&](int view) {
+    PhotographReading reading = options.reading;
+    reading.page = view;
+    return open_frame_source(options.stereo, reading);
+  };
+  return std::make_unique<TwoCameraPairs>(open_view(0), open_view(1), 0, true);
+}
+
 std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
   if (options.queue != nullptr) {
     return std::make_unique<SuppliedPairs>(options.queue);
@@ -125,7 +136,14 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
     return open_streams(options);
   }
   if (!options.stereo.empty()) {
-    return packed_pairs(open_frame_source(options.stereo, options.reading), *options.packing);
+    std::unique_ptr<FrameSource> source = open_frame_source(options.stereo, options.reading);
+    if (options.packing) {
+      return packed_pairs(std::move(source), *options.packing);
+    }
+    if (source->video_file().empty() && is_stereo_jpeg(source->files().front())) {
+      return open_views(options);
+    }
+    throw UsageError("stereo needs packing, such as sbsl");
   }
   if (!options.pairs.empty()) {
     return open_pair_list(options.pairs, options.reading);
@@ -187,7 +205,7 @@ void PairSourceOptions::validate() const {
   if (!more.empty() && !two_cameras) {
     throw UsageError("more is given, expected it with left and right only");
   }
-  if (!stereo.empty() && !packing) {
+  if (!stereo.empty() && is_stream() && !packing) {
     throw UsageError("stereo needs packing, such as sbsl");
   }
   if (packing && stereo.empty()) {
