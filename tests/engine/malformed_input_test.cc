@@ -1,5 +1,7 @@
 
 
+#include <opencv2/imgcodecs.hpp>
+
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/io/video/frame_source.h"
@@ -68,6 +70,8 @@ TEST_P(MalformedImage, IsAnErrorOrAnImage) {
     write_photograph(path, noise<float>(13, 7, 3));
   } else if (extension == ".pgm") {
     write_photograph(path, noise<std::uint16_t>(13, 7, 1));
+  } else if (extension == ".jp2") {
+    cv::imwrite(path, cv::Mat(40, 70, CV_8UC3, cv::Scalar(10, 90, 200)));
   } else {
     write_photograph(path, noise<std::uint8_t>(13, 7, 3));
   }
@@ -76,7 +80,7 @@ TEST_P(MalformedImage, IsAnErrorOrAnImage) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, MalformedImage,
                          testing::Values(".png", ".jpg", ".tiff", ".bmp", ".ppm", ".pgm", ".webp",
-                                         ".exr", ".pfm"),
+                                         ".exr", ".pfm", ".jp2"),
                          [](const auto& test) { return std::string(test.param).substr(1); });
 
 class MalformedDisparity : public testing::TestWithParam<const char*> {};

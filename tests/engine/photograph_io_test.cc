@@ -200,6 +200,60 @@ TEST(PhotographIo, ReadsPalettesBitsAndGreyAlpha) {
             (std::vector<int>{5, 6}));
 }
 
+TEST(PhotographIo, ReadsJpeg2000) {
+  const TemporaryFolder folder;
+  cv::Mat stored(40, 70, CV_16UC1);
+  cv::randu(stored, 0, 32767);  // 15 bits, as Sentinel-2 has them
+  const std::vector<int> lossless = {cv::IMWRITE_JPEG2000_COMPRESSION_X1000, 1000};
+  cv::imwrite(folder / "a.jp2", stored, lossless);
+  const Photograph read = read_photograph(folder / "a.jp2");
+  const auto& image = std::get<Image<std::uint16_t>>(read.pixels);
+  for (const auto [x, y] : positions_of(70, 40)) {
+    ASSERT_EQ(image.at(x, y), stored.at<std::uint16_t>(y, x)) << x << ", " << y;
+  }
+  auto bytes = bytes_of(folder / "a.jp2");
+  const auto size = std::ranges::search(bytes, std::array<std::uint8_t, 4>{0xFF, 0x4F, 0xFF, 0x51});
+  std::fill_n(size.begin() + 8, 8, std::uint8_t{0x7F});  // width and height
+  put_bytes(folder / "b.jp2", bytes);
+  EXPECT_THAT(error_of([&] { read_photograph(folder / "b.jp2"); }), HasSubstr("at most"));
+}
+
+TEST(PhotographIo, NamesFormatsThatAreNotRead) {
+  const TemporaryFolder folder;
+  const auto complaint = [&](const char* name, std::string_view bytes) {
+    put_text(folder / name, std::string(bytes));
+    return error_of([&] { read_photograph(folder / name); });
+  };
+  using std::string_view_literals::operator""sv;
+  EXPECT_THAT(complaint("a",
+                        "\0\0\0\x1C"
+                        "ftypavif"sv),
+              HasSubstr("is AVIF, which is not read"));
+  EXPECT_THAT(complaint("a",
+                        "\0\0\0\x1C"
+                        "ftypheic"sv),
+              HasSubstr("is HEIC, which is not read"));
+  EXPECT_THAT(complaint("a", "GIF89a"), HasSubstr("is GIF, which is not read; convert it"));
+  EXPECT_THAT(complaint("a", "SDPX"), HasSubstr("is DPX"));
+  EXPECT_THAT(complaint("a.tga", "\0\0\2"sv), HasSubstr("is TGA"));
+  EXPECT_THAT(complaint("a",
+                        "\0\0\0\x1C"
+                        "ftypisom"sv),
+              HasSubstr("is a film"));
+}
+
+TEST(PhotographIo, ReadsOneBand) {
+  const TemporaryFolder folder;
+  const Photograph colour = noise<std::uint16_t>(5, 3, 3);
+  write_photograph(folder / "a.png", colour);
+  const Photograph green = read_photograph(folder / "a.png", {.band = 2});
+  ASSERT_EQ(green.channels(), 1);
+  EXPECT_EQ(std::get<Image<std::uint16_t>>(green.pixels).at(4, 1),
+            std::get<Image<std::uint16_t>>(colour.pixels).at(4, 1, 1));
+  EXPECT_THAT(error_of([&] { read_photograph(folder / "a.png", {.band = 4}); }),
+              HasSubstr("has 3 bands"));
+}
+
 TEST(PhotographIo, RefusesInfinityAndLeavesOutNaN) {
   const TemporaryFolder folder;
   for (const float bad :

@@ -225,42 +225,36 @@ struct OtherFormat {
   std::size_t offset;
   std::string_view bytes;
   std::string_view name;
-  std::string_view remedy;
 };
-constexpr std::string_view kConvert = "convert it to PNG, for example with ffmpeg -i FILE FILE.png";
-constexpr std::string_view kHeifConvert = "convert it to PNG, for example with heif-convert";
-constexpr std::string_view kFilm = "'vantage run' reads films";
-constexpr OtherFormat kOtherFormats[] = {
-    {4, "ftypavif", "AVIF", kConvert},
-    {4, "ftypavis", "AVIF", kConvert},
-    {4, "ftyphei", "HEIC", kHeifConvert},
-    {4, "ftyphev", "HEIC", kHeifConvert},
-    {4, "ftypmif1", "HEIF", kHeifConvert},
-    {4, "ftypmsf1", "HEIF", kHeifConvert},
-    {4, "JXL ", "JPEG XL", "convert it to PNG, for example with djxl"},
-    {0, "\xFF\x0A", "JPEG XL", "convert it to PNG, for example with djxl"},
-    {0, "GIF8", "GIF", kConvert},
-    {0, "SDPX", "DPX", kConvert},
-    {0, "XPDS", "DPX", kConvert},
-    {0, "8BPS", "Photoshop", kConvert},
-    {0, "#?R", "Radiance HDR", "convert it to EXR or PFM"},
-    {0, "SIMPLE  =", "FITS", "convert it to TIFF"},
-    {0, "II\xBC\x01", "JPEG XR", kConvert},
-    {4, "ftyp", "a film (MP4)", kFilm},
-    {0, "\x1A\x45\xDF\xA3", "a film (Matroska)", kFilm},
-};
+constexpr OtherFormat kOtherFormats[] = {{4, "ftypavi", "AVIF"},
+                                         {4, "ftyphe", "HEIC"},
+                                         {4, "ftypmif1", "HEIF"},
+                                         {4, "ftypmsf1", "HEIF"},
+                                         {4, "JXL ", "JPEG XL"},
+                                         {0, "\xFF\x0A", "JPEG XL"},
+                                         {0, "GIF8", "GIF"},
+                                         {0, "SDPX", "DPX"},
+                                         {0, "XPDS", "DPX"},
+                                         {0, "8BPS", "a Photoshop file"},
+                                         {0, "#?R", "Radiance HDR"},
+                                         {0, "SIMPLE  =", "FITS"},
+                                         {0, "II\xBC\x01", "JPEG XR"},
+                                         {4, "ftyp", "a film"},
+                                         {0, "\x1A\x45\xDF\xA3", "a film"}};
 
 [[noreturn]] void fail_as_unknown(const FileBytes& file) {
-  const auto refuse = [&](std::string_view name, std::string_view remedy) {
-    file.fail(fmt::format("is {}, which is not read as an image; {}", name, remedy));
-  };
+  std::string_view name = lower_case_extension(file.name()) == ".tga" ? "TGA" : "";
   for (const OtherFormat& other : kOtherFormats) {
-    if (file.has_at(other.offset, other.bytes)) {
-      refuse(other.name, other.remedy);
-    }
+    name = name.empty() && file.has_at(other.offset, other.bytes) ? other.name : name;
   }
-  if (lower_case_extension(file.name()) == ".tga") {  // begins with nothing of its own
-    refuse("TGA", kConvert);
+  if (name == "a film") {
+    file.fail("is a film, expected an image; 'vantage run' reads films");
+  }
+  if (!name.empty()) {
+    file.fail(
+        fmt::format("is {}, which is not read; convert it to PNG or TIFF, for example with "
+                    "ImageMagick or FFmpeg",
+                    name));
   }
   file.fail("is not an image, expected PNG, JPEG, TIFF, JPEG 2000, PNM, PFM, BMP, WebP or EXR");
 }

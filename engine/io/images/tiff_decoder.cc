@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -184,47 +185,40 @@ void unpack_bits(const std::uint8_t* source, std::size_t count, int bits, std::u
   }
 }
 
-/// Values of a row of samples as T. False: there are no such samples.
+/// What reads a row of samples as T; empty: there are no such samples.
 template <typename T>
-bool unpack(const TiffLayout& layout, const std::uint8_t* source, std::size_t count, T* target) {
+std::function<void(const std::uint8_t*, std::size_t, T*)> unpack_as(const TiffLayout& layout) {
   if constexpr (sizeof(T) == 1) {
-    std::memcpy(target, source, count);
-    return true;
+    return copy_values<std::uint8_t, T>;
   } else if constexpr (sizeof(T) == 2) {
-    layout.bits == 16 ? copy_values<std::uint16_t>(source, count, target)
-                      : unpack_bits(source, count, layout.bits, target);
-    return true;
+    if (layout.bits == 16) {
+      return copy_values<std::uint16_t, T>;
+    }
+    return [bits = layout.bits](const std::uint8_t* source, std::size_t count, T* target) {
+      unpack_bits(source, count, bits, target);
+    };
   } else {
     switch (layout.format * 100 + layout.bits) {
       case SAMPLEFORMAT_UINT * 100 + 32:
-        copy_values<std::uint32_t>(source, count, target);
-        return true;
+        return copy_values<std::uint32_t, T>;
       case SAMPLEFORMAT_UINT * 100 + 64:
-        copy_values<std::uint64_t>(source, count, target);
-        return true;
+        return copy_values<std::uint64_t, T>;
       case SAMPLEFORMAT_INT * 100 + 8:
-        copy_values<std::int8_t>(source, count, target);
-        return true;
+        return copy_values<std::int8_t, T>;
       case SAMPLEFORMAT_INT * 100 + 16:
-        copy_values<std::int16_t>(source, count, target);
-        return true;
+        return copy_values<std::int16_t, T>;
       case SAMPLEFORMAT_INT * 100 + 32:
-        copy_values<std::int32_t>(source, count, target);
-        return true;
+        return copy_values<std::int32_t, T>;
       case SAMPLEFORMAT_INT * 100 + 64:
-        copy_values<std::int64_t>(source, count, target);
-        return true;
+        return copy_values<std::int64_t, T>;
       case SAMPLEFORMAT_IEEEFP * 100 + 16:
-        copy_values<cv::float16_t>(source, count, target);
-        return true;
+        return copy_values<cv::float16_t, T>;
       case SAMPLEFORMAT_IEEEFP * 100 + 32:
-        std::memcpy(target, source, count * sizeof(float));
-        return true;
+        return copy_values<float, T>;
       case SAMPLEFORMAT_IEEEFP * 100 + 64:
-        copy_values<double>(source, count, target);
-        return true;
+        return copy_values<double, T>;
       default:
-        return false;
+        return {};
     }
   }
 }
@@ -253,6 +247,13 @@ void for_each_row_of_chunks(const FileBytes& file, const TiffFile& tiff, const T
   if (rows < 1 || columns < 1 || row_bytes != expected_bytes) {
     file.fail(
         "is damaged or of an unsupported kind, its rows have another size than its header says");
+  }
+  const auto unpack = unpack_as<T>(layout);
+  if (!unpack) {
+    file.fail(
+        fmt::format("holds values of an unsupported type ({} bits), expected integers of 8 to "
+                    "16, 32 or 64 bits, or floats of 16, 32 or 64",
+                    layout.bits));
   }
   const std::size_t chunk_bytes = row_bytes * static_cast<std::size_t>(rows);
   const std::size_t image_bytes = row_bytes * static_cast<std::size_t>(layout.width / columns + 1) *
@@ -286,13 +287,8 @@ void for_each_row_of_chunks(const FileBytes& file, const TiffFile& tiff, const T
           tiff.fail();
         }
         for (int row = 0; row < rows_here; ++row) {
-          if (!unpack<T>(layout, chunk.data() + row_bytes * static_cast<std::size_t>(row),
-                         row_values, values.data())) {
-            file.fail(
-                fmt::format("holds values of an unsupported type ({} bits), expected integers "
-                            "of 8 to 16, 32 or 64 bits, or floats of 16, 32 or 64",
-                            layout.bits));
-          }
+          unpack(chunk.data() + row_bytes * static_cast<std::size_t>(row), row_values,
+                 values.data());
           take(x, y + row, plane, values.data(), std::min(columns, layout.width - x), samples);
         }
       }

@@ -10,78 +10,59 @@
 #include <cstring>
 
 namespace vantage {
-namespace {
-
-constexpr std::uint32_t kReducedOrMask = FILETYPE_REDUCEDIMAGE | FILETYPE_MASK;
-constexpr int kMaxDirectories = 65535;
-
-}  // namespace
 
 const LibtiffFunctions& libtiff() {
   static const LibtiffFunctions functions;
   return functions;
 }
 
-tmsize_t TiffFile::read(thandle_t self, void* target, tmsize_t count) {
-  auto& file = *static_cast<TiffFile*>(self);
-  const auto rest = file.file_.all().subspan(std::min(file.position_, file.file_.size()));
-  const std::size_t bytes = std::min(static_cast<std::size_t>(count), rest.size());
-  std::memcpy(target, rest.data(), bytes);
-  file.position_ += bytes;
-  return static_cast<tmsize_t>(bytes);
-}
-
-tmsize_t TiffFile::refuse_to_write(thandle_t, void*, tmsize_t) { return 0; }
-
-toff_t TiffFile::seek(thandle_t self, toff_t offset, int origin) {
-  auto& file = *static_cast<TiffFile*>(self);
-  file.position_ = offset + (origin == SEEK_CUR   ? file.position_
-                             : origin == SEEK_END ? file.file_.size()
-                                                  : 0);
-  return file.position_;
-}
-
-int TiffFile::close(thandle_t) { return 0; }
-toff_t TiffFile::size(thandle_t self) { return static_cast<TiffFile*>(self)->file_.size(); }
-
-int TiffFile::map(thandle_t self, void** base, toff_t* bytes) {
-  // libtiff does not write to what it maps for reading.
-  const auto all = static_cast<TiffFile*>(self)->file_.all();
-  *base = const_cast<std::uint8_t*>(all.data());  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-  *bytes = all.size();
-  return 1;
-}
-
-void TiffFile::unmap(thandle_t, void*, toff_t) {}
-
-int TiffFile::take_problem(TIFF*, void* self, const char*, const char* format, va_list values) {
-  auto& problem = static_cast<TiffFile*>(self)->problem_;
-  if (problem.empty()) {
-    std::array<char, 160> text{};
-    std::vsnprintf(text.data(), text.size(), format, values);
-    problem = text.data();
-    std::replace(problem.begin(), problem.end(), '\n', ' ');
-  }
-  return 1;
-}
-
-int TiffFile::ignore_warning(TIFF*, void*, const char*, const char*, va_list) { return 1; }
-
-TiffFile::TiffFile(const FileBytes& file, int page) : file_(file) {
+void TiffFile::open() {
   const LibtiffFunctions& functions = libtiff();
   const std::unique_ptr<TIFFOpenOptions, decltype(functions.TIFFOpenOptionsFree)> options(
       functions.TIFFOpenOptionsAlloc(), functions.TIFFOpenOptionsFree);
-  functions.TIFFOpenOptionsSetErrorHandlerExtR(options.get(), take_problem, this);
-  functions.TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore_warning, this);
-  tiff_.reset(functions.TIFFClientOpenExt("", "r", this, read, refuse_to_write, seek, close, size,
-                                          map, unmap, options.get()));
+  functions.TIFFOpenOptionsSetErrorHandlerExtR(
+      options.get(),
+      [](TIFF*, void* self, const char*, const char* format, va_list values) {
+        std::string& problem = static_cast<TiffFile*>(self)->problem_;
+        std::array<char, 160> text{};
+        std::vsnprintf(text.data(), text.size(), format, values);
+        problem = problem.empty() ? text.data() : problem;
+        std::replace(problem.begin(), problem.end(), '\n', ' ');
+        return 1;
+      },
+      this);
+  functions.TIFFOpenOptionsSetWarningHandlerExtR(
+      options.get(), [](TIFF*, void*, const char*, const char*, va_list) { return 1; }, nullptr);
+  tiff_.reset(functions.TIFFClientOpenExt(
+      "", "rm", this,  // m: not mapped into memory, where it is already
+      [](thandle_t self, void* target, tmsize_t count) {
+        auto& file = *static_cast<TiffFile*>(self);
+        const auto rest = file.file_.all().subspan(std::min(file.position_, file.file_.size()));
+        const std::size_t bytes = std::min(static_cast<std::size_t>(count), rest.size());
+        std::memcpy(target, rest.data(), bytes);
+        file.position_ += bytes;
+        return static_cast<tmsize_t>(bytes);
+      },
+      [](thandle_t, void*, tmsize_t) { return tmsize_t{0}; },
+      [](thandle_t self, toff_t offset, int origin) {
+        auto& file = *static_cast<TiffFile*>(self);
+        file.position_ = offset + (origin == SEEK_CUR   ? file.position_
+                                   : origin == SEEK_END ? file.file_.size()
+                                                        : 0);
+        return toff_t{file.position_};
+      },
+      [](thandle_t) { return 0; },
+      [](thandle_t self) { return toff_t{static_cast<TiffFile*>(self)->file_.size()}; }, nullptr,
+      nullptr, options.get()));
   if (tiff_ == nullptr) {
     fail();
   }
-  find_page(page);
 }
 
-void TiffFile::find_page(int page) {
+TiffFile::TiffFile(const FileBytes& file, int page) : file_(file) {
+  constexpr std::uint32_t kReducedOrMask = FILETYPE_REDUCEDIMAGE | FILETYPE_MASK;
+  constexpr int kMaxDirectories = 65535;
+  open();
   int found = -1;
   for (int directory = 0; directory < kMaxDirectories; ++directory) {
     if (directory > 0 && libtiff().TIFFReadDirectory(tiff_.get()) == 0) {

@@ -55,8 +55,7 @@ class TiffFile {
 
   [[nodiscard]] TIFF* get() const { return tiff_.get(); }
   [[nodiscard]] int pages() const { return pages_; }
-  /// The number that a tag holds: of several the first; `otherwise` if there is none, and libtiff
-  /// knows no default.
+  /// The number that a tag holds; `otherwise` if there is none, and libtiff knows no default.
   template <typename T>
   [[nodiscard]] T number(std::uint32_t tag, T otherwise) const {
     T value = otherwise;
@@ -75,25 +74,13 @@ class TiffFile {
   struct Close {
     void operator()(TIFF* tiff) const { libtiff().TIFFClose(tiff); }
   };
-  void find_page(int page);
+  void open();
 
   const FileBytes& file_;
   std::size_t position_ = 0;
   std::string problem_;  ///< libtiff's first
   std::unique_ptr<TIFF, Close> tiff_;
   int pages_ = 0;
-
-  static tmsize_t read(thandle_t self, void* target, tmsize_t count);
-  static tmsize_t refuse_to_write(thandle_t self, void* source, tmsize_t count);
-  static toff_t seek(thandle_t self, toff_t offset, int origin);
-  static int close(thandle_t self);
-  static toff_t size(thandle_t self);
-  static int map(thandle_t self, void** base, toff_t* bytes);
-  static void unmap(thandle_t self, void* base, toff_t bytes);
-  static int take_problem(TIFF* tiff, void* self, const char* module, const char* format,
-                          va_list values);
-  static int ignore_warning(TIFF* tiff, void* self, const char* module, const char* format,
-                            va_list values);
 };
 
 }  // namespace vantage
