@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -13,12 +14,10 @@
 #include "engine/image/left_out.h"
 #include "engine/io/images/preview.h"
 #include "engine/io/maps/map_io.h"
-#include "engine/options/given_map_settings.h"
 #include "engine/options/pair_source_settings.h"
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
-#include "python/metres.h"
 #include "python/options.h"
 #include "python/remark_warnings.h"
 
@@ -47,49 +46,17 @@ void write_image(const py::object& path, const py::object& image, bool bgr) {
   without_gil([&] { write_photograph(file, pixels.copy()); });
 }
 
-/// Of a file: there is no report that would have notes.
-void warn_of_assumed(std::vector<Remark>& remarks) {
+/// Reads by read_disparity or read_depth. There is no report that would have notes, so all remarks
+/// are warnings.
+template <Image<float> (*kRead)(const std::filesystem::path&, double, std::vector<Remark>*)>
+py::array read_map(const py::object& path, double scale) {
+  const std::string file = path_of(path);
+  std::vector<Remark> remarks;
+  Image<float> map = without_gil([&] { return kRead(file, scale, &remarks); });
   for (Remark& remark : remarks) {
     remark.kind = Remark::Kind::kWarning;
   }
   RemarkWarnings().warn(remarks);
-}
-
-py::array read_map(const py::object& path, double scale,
-                   const std::optional<StereoCalibration>& calibration, py::dict keywords) {
-  const std::string file = path_of(path);
-  Execution& execution = take_execution(keywords);
-  GivenMapOptions given;
-  MetricOptions options;
-  Settings settings;
-  settings.choice<MapQuantity>(
-      "given", given.quantity,
-      {{"disparity", MapQuantity::kDisparity}, {"depth", MapQuantity::kDepth}}, "");
-  add_rig_scale_settings(settings, options.rig, RigUse::kDepths);
-  set_options(settings, keywords);
-  if (!given.holds_depths() && (calibration || keywords.size() > 1)) {
-    throw UsageError("cameras have no effect without given=\"depth\"");
-  }
-  given.depth_scale = scale;
-  std::vector<Remark> remarks;
-  // Reading alone does not wait for other work on the threads.
-  if (!given.holds_depths()) {
-    DisparityMap map = without_gil([&] { return read_disparity(file, scale, &remarks); });
-    warn_of_assumed(remarks);
-    return array_of(std::move(map));
-  }
-  DisparityMap map = on_threads_of(execution, [&] {
-    const auto camera = [&](int width, int height) {
-      const DisparityMap size(width, height);
-      return metric_camera({.disparity_px = size.view()}, calibration, options,
-                           MetricOutput::kDepth)
-          .camera.scale;
-    };
-    return read_given_map(file, given, camera, execution, remarks);
-  });
-  if (scale == 0) {
-    warn_of_assumed(remarks);
-  }
   return array_of(std::move(map));
 }
 
@@ -134,7 +101,8 @@ py::array colours(const py::object& disparity, const py::object& limits) {
 void bind_files(py::module_& module) {
   module.def("read_image", &read_image);
   module.def("write_image", &write_image);
-  module.def("read_disparity", &read_map);
+  module.def("read_disparity", &read_map<read_disparity>);
+  module.def("read_depth", &read_map<read_depth>);
   module.def("write_disparity", &write_map);
   module.def("write_depth", &write_depths);
   module.def("colours", &colours);

@@ -25,7 +25,7 @@ MetricOptions metric_options(MetricOutput output, const py::dict& keywords) {
     add_cloud_settings(settings, options.cloud);
   } else if (output == MetricOutput::kDepth) {
     add_max_depth_setting(settings, options.cloud.max_depth);
-  } else {
+  } else if (output == MetricOutput::kDepthResolution) {
     add_disparity_resolution_setting(settings, options.disparity_resolution_px);
   }
   set_options(settings, keywords);
@@ -56,7 +56,7 @@ MetricCamera metric_camera(const MetricMap& map,
       throw UsageError("--depth-resolution needs --calibration or --focal-length");
     }
   } else {
-    options.rig.require_given(name, output == MetricOutput::kDepth ? "depth" : "cloud");
+    options.rig.require_given(name, output == MetricOutput::kPoints ? "cloud" : "depth");
   }
   if (!calibration) {
     return {options.rig.camera(width, height, map.side, false), std::string(kCameraFrame)};
@@ -123,6 +123,11 @@ py::array to_metres(MetricOutput output, const py::object& disparity,
   const MetricMap source{.disparity_px = map.view(), .side = side};
   return array_of(on_threads_of(execution, [&] {
     const MetricCamera camera = metric_camera(source, calibration, options, output);
+    if (output == MetricOutput::kDisparity) {
+      Image<float> disparity_px;
+      disparity_map(map.view(), camera.camera.scale, execution, disparity_px);
+      return disparity_px;
+    }
     return output == MetricOutput::kDepth
                ? depths(source, camera, options, execution)
                : depth_resolutions(source, camera, options, kFractionalStep_px, execution);
@@ -224,6 +229,10 @@ void bind_metres(py::module_& module) {
                                     const py::dict& keywords) {
     return to_metres(MetricOutput::kDepthResolution, disparity, calibration, keywords);
   });
+  module.def("disparity",
+             [](const py::object& depth, const Calibration& calibration, const py::dict& keywords) {
+               return to_metres(MetricOutput::kDisparity, depth, calibration, keywords);
+             });
   module.def("cloud", &to_cloud);
   module.def("mesh", &to_mesh);
   module.def("reproject", &to_points);

@@ -11,8 +11,8 @@
 
 namespace vantage::python {
 
-/// What a map is turned into.
-enum class MetricOutput { kDepth, kDepthResolution, kPoints };
+/// What a map is turned into; kDisparity: a depth map.
+enum class MetricOutput { kDepth, kDepthResolution, kPoints, kDisparity };
 
 /// Options of that, as 'vantage match' has them.
 struct MetricOptions {

@@ -24,6 +24,7 @@
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/map_io.h"
 #include "engine/options/given_map_settings.h"
 #include "engine/options/settings.h"
 
@@ -36,7 +37,7 @@ struct EvalJob {
   std::string second;
   bool views = false;
   GivenMapOptions given;
-  GivenMapOptions truth;  ///< its quantity and scale
+  std::optional<double> truth_scale;
   MapCameraInput cameras;
   std::string mask;
   int ignore_border_px = 0;
@@ -67,14 +68,10 @@ void add_eval_settings(Settings& settings, EvalJob& job) {
       .required = true;
   settings.flag("views", job.views, "Compare two photographs, not disparity maps");
   settings.number(
-      "scale", job.truth.disparity_scale, "S",
+      "scale", job.truth_scale, "S",
       "Divide values of an integer TRUTH file by S; auto: 256 for 16-bit PNG, in folders "
       "what Middlebury states; otherwise required for 8-bit files");
   add_given_map_settings(settings, job.given);
-  settings.choice<MapQuantity>(
-      "given-truth", job.truth.quantity,
-      {{"disparity", MapQuantity::kDisparity}, {"depth", MapQuantity::kDepth}},
-      "The same of TRUTH");
   settings.input_path("mask", job.mask, "FILE",
                       "Evaluate only pixels that are white in this 8-bit image");
   settings.integer("ignore-border", job.ignore_border_px, "PX",
@@ -86,33 +83,26 @@ void add_eval_settings(Settings& settings, EvalJob& job) {
   add_submission_settings(settings, job.submission);
 }
 
-void check_depths(const EvalJob& job, const Settings& settings) {
-  require_above_0("scale", job.truth.disparity_scale);
-  require_above_0("disparity-scale", job.given.disparity_scale);
-  require_above_0("depth-scale", job.given.depth_scale);
-  job.cameras.validate(settings);
-  if (job.given.holds_depths() || job.truth.holds_depths()) {
-    job.cameras.rig.require_given(job.cameras.calibration,
-                                  job.given.holds_depths() ? "given" : "given-truth");
-  } else {
-    settings.refuse_idle({"depth-scale", "calibration", "focal-length"}, "without --given depth");
-  }
-}
-
 void check(const EvalJob& job, const Settings& settings) {
   job.common.execution.validate();
-  check_depths(job, settings);
+  require_above_0("scale", job.truth_scale);
+  job.given.validate(settings);
+  job.cameras.validate(settings);
+  if (job.given.holds_depths()) {
+    job.cameras.rig.require_given(job.cameras.calibration, "given");
+  } else {
+    settings.refuse_idle({"calibration", "focal-length"}, "without --given depth");
+  }
   check_submission(job.submission, settings);
   if (job.ignore_border_px < 0) {
     throw UsageError(
         fmt::format("--ignore-border is {}, expected at least 0", job.ignore_border_px));
   }
   if (job.views) {
-    settings.refuse_idle({"scale", "disparity-scale", "given", "given-truth", "ignore-border"},
-                         "with --views");
+    settings.refuse_idle({"scale", "disparity-scale", "given", "ignore-border"}, "with --views");
   }
   if (job.has_folders()) {
-    settings.refuse_idle({"mask", "given-truth"}, "with folders");
+    settings.refuse_idle({"mask"}, "with folders");
     if (!std::filesystem::is_directory(job.first)) {
       throw UsageError(fmt::format("{} is no folder, but {} is one, expected two of them",
                                    job.first, job.second));
@@ -128,10 +118,10 @@ void check(const EvalJob& job, const Settings& settings) {
   check_common_files(job.common, files);
 }
 
-DisparityMap read_map(const EvalJob& job, const std::string& path, const GivenMapOptions& given,
-                      Execution& execution, std::vector<Remark>& remarks) {
+DisparityMap read_map(const EvalJob& job, const std::string& path, Execution& execution,
+                      std::vector<Remark>& remarks) {
   return read_given_map(
-      path, given,
+      path, job.given,
       [&](int width, int height) { return job.cameras.camera(width, height, Side::kLeft).scale; },
       execution, remarks);
 }
@@ -157,12 +147,10 @@ Mask read_mask(const std::string& path) {
 }
 
 std::vector<Row> judge_disparity(const EvalJob& job, Execution& execution, RunReport& report) {
-  GivenMapOptions truth = job.truth;
-  truth.depth_scale = job.given.depth_scale;
   std::vector<Remark> remarks;
   const auto maps = report.timed_file_access("read", [&] {
-    return std::pair(read_map(job, job.first, job.given, execution, remarks),
-                     read_map(job, job.second, truth, execution, remarks));
+    return std::pair(read_map(job, job.first, execution, remarks),
+                     read_disparity(job.second, job.truth_scale.value_or(0), &remarks));
   });
   tell_remarks(remarks, job.common, report);
   DisparityEvaluationOptions options;
@@ -186,11 +174,10 @@ std::vector<Row> judge_disparity(const EvalJob& job, Execution& execution, RunRe
 
 /// Scores of a folder of maps, and files for a server.
 void judge_folder(const EvalJob& job, Execution& execution, RunReport& report) {
-  const BenchmarkFolder folder = read_benchmark_folder(job.second);
-  std::vector<Remark> remarks;
+  const BenchmarkFolder folder = read_benchmark_folder(job.second, job.first);
   std::vector<std::string> missing;
   for (const BenchmarkScene& scene : folder.scenes) {
-    if (!find_benchmark_map(job.first, scene.name)) {
+    if (scene.map.empty()) {
       missing.push_back(scene.name);
     }
   }
@@ -198,38 +185,40 @@ void judge_folder(const EvalJob& job, Execution& execution, RunReport& report) {
     throw Error(fmt::format("{}: holds no map of {}, expected files such as {}.pfm", job.first,
                             job.second, missing.front()));
   }
+  std::vector<Remark> remarks = {{Remark::Kind::kNote, "layout",
+                                  fmt::format("{} is taken as {} by what is in it: {} scenes",
+                                              job.second, folder.layout, folder.scenes.size())}};
   if (!missing.empty()) {
     remarks.push_back({Remark::Kind::kWarning, "missing",
                        fmt::format("{} of {} maps are missing in {}: {}", missing.size(),
                                    folder.scenes.size(), job.first, fmt::join(missing, ", "))});
   }
-  const auto read = [&](std::vector<Remark>& found) -> ReadSceneMap {
-    return [&](const std::string& scene) -> std::optional<SceneMap> {
-      const auto file = find_benchmark_map(job.first, scene);
-      return file ? std::optional(SceneMap{
-                        read_map(job, file->string(), job.given, execution, found), file->string()})
-                  : std::nullopt;
+  const auto read_into = [&](std::vector<Remark>& found) -> ReadMap {
+    return [&](const std::filesystem::path& file) {
+      return read_map(job, file.string(), execution, found);
     };
   };
-  const std::vector<ScoreRow> rows = report.timed_compute("evaluate", [&] {
-    return score_folder(folder, read(remarks), job.truth.disparity_scale.value_or(0),
+  const SettingValue rows = report.timed_compute("evaluate", [&] {
+    return score_folder(folder, read_into(remarks), job.truth_scale.value_or(0),
                         job.ignore_border_px);
   });
-  if (rows.empty() && !job.submission.kind) {
-    throw Error(fmt::format("{}: is a test set without truth, expected --submission", job.second));
+  if (rows.empty() && (!job.submission.kind || !job.csv.empty())) {
+    throw Error(
+        fmt::format("{}: is a test set without truth, expected --submission alone", job.second));
   }
   tell_remarks(remarks, job.common, report);
+  report.set_results({{"scores", rows}, {"missing", missing}});
   if (!rows.empty()) {
     fmt::print("{}", score_table(rows));
   }
-  report.set_results({{"scores", score_values(rows)}, {"missing", missing}});
   if (!job.csv.empty()) {
     write_text_file(job.csv, score_csv(rows));
   }
   if (job.submission.kind) {
     std::vector<Remark> told;
-    const std::string line = report.timed_file_access(
-        "write", [&] { return write_submission(job.submission, job.second, folder, read(told)); });
+    const std::string line = report.timed_file_access("write", [&] {
+      return write_submission(job.submission, job.second, folder, read_into(told));
+    });
     if (!job.common.quiet) {
       tell("eval: {}\n", line);
     }

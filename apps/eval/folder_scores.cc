@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
+#include <utility>
+#include <vector>
 
 #include "apps/eval/score_columns.h"
 #include "apps/reports/text_table.h"
@@ -13,117 +15,107 @@
 namespace vantage::apps {
 namespace {
 
-void add_totals(std::vector<ScoreRow>& rows) {
-  std::vector<std::string> regions;
-  std::map<std::string, std::vector<DisparityScores>> scores;
-  for (const ScoreRow& row : rows) {
-    std::vector<DisparityScores>& of_region = scores[row.scores.region];
-    if (of_region.empty()) {
-      regions.push_back(row.scores.region);
-    }
-    of_region.push_back(row.scores.scores);
+SettingValue row_of(const std::string& scene, const std::string& map, const RegionScores& region) {
+  SettingValue row = {{"scene", scene},
+                      {"region", region.region},
+                      {"map", map},
+                      {"evaluated_pixels", region.scores.evaluated_pixels},
+                      {"valid_pixels", region.scores.valid_pixels}};
+  for (const ScoreColumn& column : kScoreColumns) {
+    const double value = region.scores.*column.value;
+    row[std::string(column.key)] = std::isfinite(value) ? SettingValue(value) : SettingValue();
   }
-  for (const std::string& region : regions) {
-    DisparityScores mean;
-    DisparityScores pixels;
-    for (const DisparityScores& one : scores[region]) {
-      mean.evaluated_pixels += one.evaluated_pixels;
-      mean.valid_pixels += one.valid_pixels;
-    }
-    pixels = mean;
-    for (const ScoreColumn& column : kScoreColumns) {
-      const bool adds_up = column.is_share() || column.key == "average_px";
-      double sum = 0;
-      double weighted_sum = 0;
-      double weight_sum = 0;
-      for (const DisparityScores& one : scores[region]) {
-        const auto weight =
-            static_cast<double>(column.is_share() ? one.evaluated_pixels : one.valid_pixels);
-        sum += one.*column.value;
-        weighted_sum += weight > 0 ? weight * one.*column.value : 0;
-        weight_sum += weight;
-      }
-      mean.*column.value = sum / static_cast<double>(scores[region].size());
-      pixels.*column.value =
-          adds_up ? weighted_sum / weight_sum : std::numeric_limits<double>::quiet_NaN();
-    }
-    rows.push_back({"mean", "", {region, mean}});
-    rows.push_back({"all pixels", "", {region, pixels}});
+  return row;
+}
+
+/// The mean of the scenes; `by_pixels`: of their pixels, of which medians and such are not known.
+DisparityScores total_of(const std::vector<DisparityScores>& scenes, bool by_pixels) {
+  DisparityScores total;
+  for (const DisparityScores& one : scenes) {
+    total.evaluated_pixels += one.evaluated_pixels;
+    total.valid_pixels += one.valid_pixels;
   }
+  for (const ScoreColumn& column : kScoreColumns) {
+    double sum = 0;
+    double weights = 0;
+    for (const DisparityScores& one : scenes) {
+      const auto pixels = column.is_share() ? one.evaluated_pixels : one.valid_pixels;
+      const double weight = by_pixels ? static_cast<double>(pixels) : 1;
+      sum += weight > 0 ? weight * one.*column.value : 0;
+      weights += weight;
+    }
+    const bool adds_up = !by_pixels || column.is_share() || column.key == "average_px";
+    total.*column.value = adds_up ? sum / weights : std::numeric_limits<double>::quiet_NaN();
+  }
+  return total;
 }
 
 }  // namespace
 
-std::vector<ScoreRow> score_folder(const BenchmarkFolder& folder, const ReadSceneMap& read,
-                                   double truth_scale, int ignore_border_px) {
-  std::vector<ScoreRow> rows;
+SettingValue score_folder(const BenchmarkFolder& folder, const ReadMap& read, double truth_scale,
+                          int ignore_border_px) {
+  SettingValue rows = SettingValue::array();
+  std::vector<std::pair<std::string, std::vector<DisparityScores>>> regions;
   for (const BenchmarkScene& scene : folder.scenes) {
-    if (const std::optional<SceneMap> map = read(scene.name)) {
-      try {
-        for (RegionScores& scores :
-             evaluate_scene(scene, map->disparity_px.view(), truth_scale, ignore_border_px)) {
-          rows.push_back({scene.name, map->file, std::move(scores)});
+    if (scene.map.empty()) {
+      continue;
+    }
+    try {
+      const DisparityMap map = read(scene.map);
+      for (const RegionScores& scores :
+           evaluate_scene(scene, map.view(), truth_scale, ignore_border_px)) {
+        rows.push_back(row_of(scene.name, scene.map.string(), scores));
+        auto of_region = std::ranges::find(regions, scores.region,
+                                           [](const auto& region) { return region.first; });
+        if (of_region == regions.end()) {
+          of_region = regions.insert(of_region, {scores.region, {}});
         }
-      } catch (const Error& error) {
-        throw Error(fmt::format("{}: {}", map->file, error.what()));
+        of_region->second.push_back(scores.scores);
       }
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", scene.map.string(), error.what()));
     }
   }
-  add_totals(rows);
+  for (const auto& [region, scenes] : regions) {
+    rows.push_back(row_of("mean", "", {region, total_of(scenes, false)}));
+    rows.push_back(row_of("all pixels", "", {region, total_of(scenes, true)}));
+  }
   return rows;
 }
 
-std::string score_table(const std::vector<ScoreRow>& rows) {
+std::string score_table(const SettingValue& rows) {
   std::vector<std::string> heads = {"scene", "region", "pixels"};
   for (const ScoreColumn& column : kScoreColumns) {
     heads.emplace_back(column.label);
   }
   TextTable table("errors in % and px", std::move(heads));
-  for (const ScoreRow& row : rows) {
-    const DisparityScores& scores = row.scores.scores;
-    std::vector<std::string> cells = {row.scene, row.scores.region,
-                                      std::to_string(scores.evaluated_pixels)};
+  for (const SettingValue& row : rows) {
+    std::vector<std::string> cells = {row["scene"].get<std::string>(),
+                                      row["region"].get<std::string>(),
+                                      row["evaluated_pixels"].dump()};
     for (const ScoreColumn& column : kScoreColumns) {
-      const double value = scores.*column.value;
-      cells.push_back(std::isfinite(value) ? fmt::format("{:.2f}", value) : "-");
+      const SettingValue& value = row[std::string(column.key)];
+      cells.push_back(value.is_null() ? "-" : fmt::format("{:.2f}", value.get<double>()));
     }
     table.add(std::move(cells));
   }
   return table.text();
 }
 
-std::string score_csv(const std::vector<ScoreRow>& rows) {
-  std::string text = "scene,region,map,evaluated_pixels,valid_pixels";
-  for (const ScoreColumn& column : kScoreColumns) {
-    text += fmt::format(",{}", column.key);
+std::string score_csv(const SettingValue& rows) {
+  std::string text;
+  for (const auto& [key, value] : rows.at(0).items()) {
+    text += fmt::format("{}{}", text.empty() ? "" : ",", key);
   }
-  for (const ScoreRow& row : rows) {
-    const DisparityScores& scores = row.scores.scores;
-    text += fmt::format("\n{},{},\"{}\",{},{}", row.scene, row.scores.region, row.map,
-                        scores.evaluated_pixels, scores.valid_pixels);
-    for (const ScoreColumn& column : kScoreColumns) {
-      const double value = scores.*column.value;
-      text += std::isfinite(value) ? fmt::format(",{:.6g}", value) : ",";
+  for (const SettingValue& row : rows) {
+    std::string fields;
+    for (const SettingValue& value : row) {
+      fields += fmt::format("{}{}", fields.empty() ? "\n" : ",",
+                            value.is_null() ? std::string() : value.dump());
     }
+    text += fields;
   }
   return text + "\n";
-}
-
-SettingValue score_values(const std::vector<ScoreRow>& rows) {
-  SettingValue values = SettingValue::array();
-  for (const ScoreRow& row : rows) {
-    const DisparityScores& scores = row.scores.scores;
-    SettingValue one = {{"scene", row.scene},
-                        {"region", row.scores.region},
-                        {"map", row.map},
-                        {"evaluated_pixels", scores.evaluated_pixels},
-                        {"valid_pixels", scores.valid_pixels}};
-    for (const ScoreColumn& column : kScoreColumns) {
-      one[std::string(column.key)] = scores.*column.value;
-    }
-    values.push_back(std::move(one));
-  }
-  return values;
 }
 
 }  // namespace vantage::apps

@@ -64,11 +64,6 @@ SceneFiles files_of(const SubmissionOptions& options, const std::string& data,
           place / fmt::format("time{}.txt", options.method)};
 }
 
-bool has_unknown(const DisparityMap& map) {
-  return finite_values(map.view()).size() <
-         static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height());
-}
-
 }  // namespace
 
 void add_submission_settings(Settings& settings, SubmissionOptions& options) {
@@ -118,40 +113,38 @@ void check_submission(const SubmissionOptions& options, const Settings& settings
 }
 
 std::string write_submission(const SubmissionOptions& options, const std::string& data,
-                             const BenchmarkFolder& folder, const ReadSceneMap& read) {
+                             const BenchmarkFolder& folder, const ReadMap& read) {
   const double seconds =
       options.times.empty() ? options.seconds.value_or(0) : seconds_of(options.times);
-  std::vector<std::string> scenes;
-  bool is_sparse = false;
+  int maps = 0;
+  int sparse_maps = 0;
   for (const BenchmarkScene& scene : folder.scenes) {
-    if (const std::optional<SceneMap> map = read(scene.name)) {
-      scenes.push_back(scene.name);
-      is_sparse = is_sparse || has_unknown(map->disparity_px);
+    if (scene.map.empty()) {
+      continue;
     }
-  }
-  for (const std::string& scene : scenes) {
-    const SceneFiles files = files_of(options, data, scene, is_sparse);
+    const DisparityMap map = read(scene.map);
+    const bool is_sparse =
+        finite_values(map.view()).size() <
+        static_cast<std::size_t>(map.width()) * static_cast<std::size_t>(map.height());
+    const SceneFiles files = files_of(options, data, scene.name, is_sparse);
     for (const fs::path& file : {files.map, files.time}) {
       if (!file.empty() && fs::exists(file)) {
         throw Error(fmt::format("{}: exists, expected a folder without files of this submission",
                                 file.string()));
       }
     }
-  }
-  for (const std::string& scene : scenes) {
-    const SceneFiles files = files_of(options, data, scene, is_sparse);
     fs::create_directories(files.map.parent_path());
-    write_disparity(files.map, read(scene)->disparity_px.view());
+    write_disparity(files.map, map.view());
     if (!files.time.empty()) {
-      write_text_file(
-          files.time,
-          fmt::format("{}{:.6g}\n", *options.kind == SubmissionKind::kEth3d ? "runtime " : "",
-                      seconds));
+      const char* const label = *options.kind == SubmissionKind::kEth3d ? "runtime " : "";
+      write_text_file(files.time, fmt::format("{}{:.6g}\n", label, seconds));
     }
+    ++maps;
+    sparse_maps += is_sparse ? 1 : 0;
   }
-  return fmt::format("{} of {} maps{}{} -> {}", scenes.size(), folder.scenes.size(),
-                     is_sparse ? ", with unknown pixels" : "",
-                     seconds > 0 ? fmt::format(", {:.4g} s each", seconds) : "", options.folder);
+  return fmt::format("{} of {} maps, {} with unknown pixels{} -> {}", maps, folder.scenes.size(),
+                     sparse_maps, seconds > 0 ? fmt::format(", {:.4g} s each", seconds) : "",
+                     options.folder);
 }
 
 }  // namespace vantage::apps

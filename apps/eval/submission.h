@@ -24,10 +24,10 @@ void add_submission_settings(Settings& settings, SubmissionOptions& options);
 /// Throws UsageError where options are missing or nothing reads them.
 void check_submission(const SubmissionOptions& options, const Settings& settings);
 
-/// Writes the maps of a data set's scenes (in `data`) as the server wants them, and the times.
-/// Returns one line for people. Throws Error before anything is written if a file exists or the
-/// report has no time.
+/// Writes the maps of a data set's scenes (in the folder `data`) as the server wants them, and the
+/// times. Returns one line for people. Throws Error for a file that exists, and if the report has
+/// no time.
 std::string write_submission(const SubmissionOptions& options, const std::string& data,
-                             const BenchmarkFolder& folder, const ReadSceneMap& read);
+                             const BenchmarkFolder& folder, const ReadMap& read);
 
 }  // namespace vantage::apps

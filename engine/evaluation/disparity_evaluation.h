@@ -13,13 +13,14 @@ struct DisparityEvaluationOptions {
   std::optional<ImageView<const std::uint8_t>> mask = std::nullopt;
   /// Rows and columns excluded at each side of the image, ≥ 0.
   int ignore_border_px = 0;
+  bool may_be_empty = false;  ///< no pixel to evaluate is no error: the scores are then of none
 };
 
 /// Errors of a disparity map against the truth. The *evaluated* pixels are those with finite truth,
 /// inside the mask and outside the ignored border; the *valid* ones are those of them with a finite
 /// estimate.
 struct DisparityScores {
-  std::int64_t evaluated_pixels = 0;  ///< ≥ 1
+  std::int64_t evaluated_pixels = 0;  ///< ≥ 1, unless may_be_empty
   std::int64_t valid_pixels = 0;
   double coverage_percent = 0;  ///< 100 · valid / evaluated
 

@@ -176,3 +176,28 @@ def test_files(tmp_path, pair):
         vantage.write_disparity(tmp_path / "map.txt", disparity_px)
     with pytest.raises(ValueError, match=r"disparity: the array has the shape 3, expected HxW"):
         vantage.write_disparity(tmp_path / "map.pfm", np.zeros(3, np.float32))
+
+
+def test_maps_of_other_tools(tmp_path):
+    path = tmp_path / "map.npy"
+    np.save(path, np.array([[-16, 40], [0, 81]], np.int16))
+    with pytest.raises(vantage.Error, match="16 for maps of OpenCV's matchers"):
+        vantage.read_disparity(path)
+    with pytest.warns(UserWarning, match="-16 .minDisparity - 1"):
+        found = vantage.read_disparity(path, 16)
+    assert same(found, np.array([[np.nan, 2.5], [0, 5.0625]], np.float32))
+    depth_m = np.array([[1, 2], [4, 0]])
+    np.save(path, np.asfortranarray(depth_m))
+    with pytest.warns(UserWarning, match="integers, taken as millimetres"):
+        assert vantage.read_depth(path)[0, 0] == np.float32(0.001)
+    with pytest.warns(UserWarning, match="1 per metre"):
+        found = vantage.read_depth(path, 1)
+    assert same(found, np.array([[1, 2], [4, np.nan]], np.float32))
+    rig = {"focal_length": 300, "baseline": 0.12, "doffs": 2}
+    disparity_px = vantage.disparity(found, **rig)
+    assert same(disparity_px, np.array([[34, 16], [7, np.nan]], np.float32))
+    assert same(vantage.depth(disparity_px, **rig), found)
+    with pytest.raises(ValueError, match="calibration"):
+        vantage.disparity(found)
+    with pytest.raises(ValueError, match="max.depth"):
+        vantage.disparity(found, **rig, max_depth=3)

@@ -29,8 +29,9 @@ from vantage._vantage import (Calibration, Error, MatchResult, Mesh, PointCloud,
 __all__ = [
     "Calibration", "Error", "Frame", "MatchResult", "Matcher", "Mesh", "PointCloud",
     "RectifiedImages", "Sequence", "UsageError", "Volume", "cloud", "colours", "depth",
-    "depth_resolution", "mesh", "read_disparity", "read_image", "rectify", "reproject",
-    "synthesize", "write_cloud", "write_depth", "write_disparity", "write_image", "write_mesh",
+    "depth_resolution", "disparity", "mesh", "read_depth", "read_disparity", "read_image",
+    "rectify", "reproject", "synthesize", "write_cloud", "write_depth", "write_disparity",
+    "write_image", "write_mesh",
 ]
 
 if _TYPE_CHECKING:  # at run time they would be names of this module
@@ -273,6 +274,14 @@ def depth(disparity: _Map, calibration: _Rig = None, **options: Any) -> NDArray[
     Raises Error for a calibration without a scale. MatchResult.depth() does the same.
     """
     return _vantage.depth(disparity, _calibration_of(calibration), options)
+
+
+def disparity(depth: _Map, calibration: _Rig = None, **options: Any) -> NDArray[np.float32]:
+    """The opposite of depth(), with its options but max_depth: disparities of depths in metres.
+
+    NaN where a depth is unknown, not above 0, or infinite.
+    """
+    return _vantage.disparity(depth, _calibration_of(calibration), options)
 
 
 def depth_resolution(disparity: _Map, calibration: _Rig = None,
@@ -534,19 +543,22 @@ def write_image(path: _Path, image: _Image, *, bgr: bool = False) -> None:
     _vantage.write_image(path, image, bool(bgr))
 
 
-def read_disparity(path: _Path, scale: float = 0.0, calibration: _Rig = None, *,
-                   given: Literal["disparity", "depth"] = "disparity",
-                   **options: Any) -> NDArray[np.float32]:
+def read_disparity(path: _Path, scale: float = 0.0) -> NDArray[np.float32]:
     """Reads a disparity map (PFM, PNG, TIFF, EXR, NPY): float32, NaN where it is unknown.
 
-    scale divides the values of integer files; 0: 256 for 16-bit PNG. 16 is the scale of OpenCV's
-    maps, whose (minDisparity - 1) is unknown. given="depth": the file holds depths, scale is their
-    number per metre (0: 1000 for integers, 1 for floats), and the cameras turn them into
-    disparities: calibration, or options as of depth() but max_depth. What was assumed is a warning.
-    Raises Error for files that cannot be read.
+    scale divides the values of integer files; 0: 256 for 16-bit PNG. 16 is that of OpenCV's
+    matchers, whose (minDisparity - 1) is unknown. What was assumed is a warning.
     """
-    return _vantage.read_disparity(path, float(scale), _calibration_of(calibration),
-                                   {"given": given, **options})
+    return _vantage.read_disparity(path, float(scale))
+
+
+def read_depth(path: _Path, scale: float = 0.0) -> NDArray[np.float32]:
+    """Reads a depth map of the same formats: float32, metres, NaN where it is unknown.
+
+    scale: values per metre; 0: 1000 for integers, 1 for floats, with a warning that says so.
+    disparity() makes a disparity map of it.
+    """
+    return _vantage.read_depth(path, float(scale))
 
 
 def write_disparity(path: _Path, disparity: _Map) -> None:

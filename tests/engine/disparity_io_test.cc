@@ -194,12 +194,13 @@ TEST(DisparityIo, RefusesOtherNpyAndSaysWhy) {
     EXPECT_THAT(error_of([&] { read_disparity(folder / "d.npy"); }), HasSubstr(expected));
   };
   const std::string data(8, '\0');
+  refuse(npy("{'descr': '>f4', 'fortran_order': False, 'shape': (1, 2), }", data), ">f4");
   refuse(npy("{'descr': '<c8', 'fortran_order': False, 'shape': (1, 1), }", data), "<c8");
   refuse(npy("{'descr': '|b1', 'fortran_order': False, 'shape': (1, 2), }", data), "|b1");
   refuse(npy("{'descr': '<i4', 'fortran_order': False, 'shape': (1, 2), }", data),
          "16 for maps of OpenCV's matchers");
   refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (2,), }", data), "shape (2,)");
-  refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2, 2), }", data), "shape");
+  refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1, 2), }", data), "shape");
   refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (0, 2), }", data), "2x0");
   refuse(npy("{'descr': '<f4', 'fortran_order': False, 'shape': (99999, 99999), }", data),
          "at most");

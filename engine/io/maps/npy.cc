@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <charconv>
 #include <iterator>
@@ -89,7 +88,6 @@ std::optional<Shape> parse_shape(std::string_view text) {
 /// Where the values are, and how they are stored.
 struct Layout {
   std::size_t begin = 0;
-  bool is_big_endian = false;
   bool is_fortran = false;
 };
 
@@ -101,14 +99,9 @@ void copy_values(const FileBytes& file, const Layout& layout, Image<float>& imag
   for (std::size_t y = 0; y < height; ++y) {
     float* const row = image.row(static_cast<int>(y));
     for (std::size_t x = 0; x < width; ++x) {
-      std::array<std::uint8_t, sizeof(Stored)> bytes;
-      const std::size_t index = layout.is_fortran ? x * height + y : y * width + x;
-      std::memcpy(bytes.data(), source.data() + sizeof(Stored) * index, sizeof(Stored));
-      if (layout.is_big_endian) {
-        std::reverse(bytes.begin(), bytes.end());
-      }
       Stored value;
-      std::memcpy(&value, bytes.data(), sizeof(Stored));
+      const std::size_t index = layout.is_fortran ? x * height + y : y * width + x;
+      std::memcpy(&value, source.data() + sizeof(Stored) * index, sizeof(Stored));
       row[x] = static_cast<float>(value);
     }
   }
@@ -156,13 +149,13 @@ StoredMap decode_npy(const FileBytes& file) {
   const std::string_view type =
       is_plain_type ? enclosed(file, type_value, type_value[0]) : "record";
   const auto* const stored = std::ranges::find_if(kNpyTypes, [&](const NpyType& known) {
-    return type.size() == 3 && std::string_view("<>|=").find(type[0]) != std::string_view::npos &&
+    return type.size() == 3 && std::string_view("<|").find(type[0]) != std::string_view::npos &&
            type.substr(1) == known.name;
   });
   if (stored == std::end(kNpyTypes)) {
     file.fail(
-        fmt::format("holds values of type {}, expected floats or integers (f2, f4, f8, i1 to "
-                    "u8)",
+        fmt::format("holds values of type {}, expected floats or integers (<f2, <f4, "
+                    "<f8, |u1, <i2 ...)",
                     quotable(type)));
   }
   const std::string_view order = find_value(file, dictionary, "fortran_order");
@@ -176,7 +169,6 @@ StoredMap decode_npy(const FileBytes& file) {
   file.check_dimensions(width, height);
 
   const Layout layout{.begin = header_begin + header_bytes,
-                      .is_big_endian = type[0] == '>',
                       .is_fortran = order.starts_with("True")};
   const std::size_t payload = static_cast<std::size_t>(type[2] - '0') *
                               static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

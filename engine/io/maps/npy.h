@@ -16,7 +16,7 @@ namespace vantage {
 bool is_npy(const FileBytes& file);
 
 /// Decodes a NumPy array file, format versions 1 to 3: floats of 16, 32 and 64 bits or integers of
-/// 8 to 64, in either byte order, rounded to float; C or Fortran order; of shape (height, width),
+/// 8 to 64, little-endian, rounded to float; C or Fortran order; of shape (height, width),
 /// also with further sides of 1 before or after. Throws Error that names any other type or shape.
 StoredMap decode_npy(const FileBytes& file);
 

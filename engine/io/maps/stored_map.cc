@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <utility>
 
 #include "engine/error.h"
 #include "engine/image/finite_values.h"
@@ -19,8 +19,6 @@ constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 constexpr double kMatcherScale = 16;
 constexpr float kWrap = 65536;
 constexpr float kFirstWrapped = 32768;
-/// Between positive and wrapped values: an eighth of the range of signed values is far from both.
-constexpr float kMinWrapGap = 16384;
 
 template <typename Function>
 void for_each_value(Image<float>& image, const Function& function) {
@@ -29,73 +27,59 @@ void for_each_value(Image<float>& image, const Function& function) {
   }
 }
 
-/// Whether the upper half of unsigned 16-bit values are negative numbers.
-bool has_wrapped(StoredMap& stored, double scale) {
-  float below = 0;
-  float least = kWrap;
-  float most = 0;
-  for_each_value(stored.values, [&](float value) {
-    if (value < kFirstWrapped) {
-      below = std::max(below, value);
-    } else {
-      least = std::min(least, value);
-      most = std::max(most, value);
+/// Whether the upper half of unsigned 16-bit values (sorted) are negative numbers.
+bool has_wrapped(const std::vector<float>& sorted, double scale, double width) {
+  const auto least = std::ranges::lower_bound(sorted, kFirstWrapped);
+  if (least == sorted.end() || (kWrap - *least) / scale >= width) {
+    return false;
+  }
+  return scale == kMatcherScale || sorted.back() / scale >= width;
+}
+
+/// Whether the least of sorted values is what OpenCV's matchers write without a match.
+bool begins_unmatched(const std::vector<float>& sorted, double scale) {
+  const auto is_whole = [&](float value) { return std::fmod(value, scale) == 0; };
+  const auto next = std::ranges::upper_bound(sorted, sorted[0]);
+  return (next == sorted.end() || *next >= sorted[0] + scale) &&
+         (sorted[0] == -scale || (scale == kMatcherScale && is_whole(sorted[0]) &&
+                                  !std::all_of(next, sorted.end(), is_whole)));
+}
+
+/// Replaces integers that are unknown by NaN, wrapped ones by what they were. Returns what was
+/// assumed, or nothing.
+std::string mark_unknown(StoredMap& stored, double scale) {
+  std::string assumed;
+  float unmatched = 0;
+  bool has_negative = false;
+  // Not for maps of a format that says how to read them.
+  if ((stored.integer_bits > 8 || stored.is_signed) && scale != stored.default_scale) {
+    std::vector<float> sorted = finite_values(stored.values.view());
+    std::ranges::sort(sorted);
+    if (stored.integer_bits == 16 && !stored.is_signed &&
+        has_wrapped(sorted, scale, stored.values.width())) {
+      const auto unwrap = [](float& v) { v -= v >= kFirstWrapped ? kWrap : 0; };
+      for_each_value(stored.values, unwrap);
+      std::ranges::for_each(sorted, unwrap);
+      std::ranges::sort(sorted);
+      assumed = "values from 32768 on are taken as negative 16-bit numbers; ";
+    }
+    has_negative = sorted[0] < 0;
+    if (sorted[0] != 0 && begins_unmatched(sorted, scale)) {
+      unmatched = sorted[0];
+      const auto count = std::ranges::upper_bound(sorted, unmatched) - sorted.begin();
+      assumed += fmt::format(
+          "{:g} (minDisparity - 1 of OpenCV's matchers, {:g} px) is taken as unknown, "
+          "{:.1f} % of the pixels; ",
+          unmatched, unmatched / scale,
+          100 * static_cast<double>(count) / static_cast<double>(sorted.size()));
+    }
+  }
+  for_each_value(stored.values, [&](float& value) {
+    if ((value == 0 && !has_negative) || (value == unmatched && unmatched != 0)) {
+      value = kUnknown;
     }
   });
-  const double width = stored.values.width();
-  const bool can_be_negative = most > 0 && (kWrap - least) / scale < width;
-  return can_be_negative &&
-         (most / scale >= width || (scale == kMatcherScale && least - below >= kMinWrapGap));
-}
-
-/// The value of OpenCV's matchers for pixels without a disparity, if the values have one.
-std::optional<float> unmatched_value(StoredMap& stored, double scale) {
-  float least = std::numeric_limits<float>::infinity();
-  for_each_value(stored.values, [&](float value) { least = std::min(least, value); });
-  const auto is_whole = [&](float value) { return std::fmod(value, scale) == 0; };
-  bool is_alone = true;
-  bool all_whole = true;
-  for_each_value(stored.values, [&](float value) {
-    is_alone = is_alone && (value == least || value >= least + scale);
-    all_whole = all_whole && is_whole(value);
-  });
-  const bool stands_out =
-      least == -scale || (scale == kMatcherScale && is_whole(least) && !all_whole);
-  return is_alone && stands_out ? std::optional(least) : std::nullopt;
-}
-
-/// Replaces the values of integers that are unknown by NaN.
-void mark_unknown(StoredMap& stored, double scale, const std::string& file,
-                  std::vector<Remark>* remarks) {
-  std::string found;
-  if (stored.integer_bits == 16 && !stored.is_signed && scale != stored.default_scale &&
-      has_wrapped(stored, scale)) {
-    for_each_value(stored.values, [](float& v) { v -= v >= kFirstWrapped ? kWrap : 0; });
-    stored.is_signed = true;
-    found = "values from 32768 on are taken as negative 16-bit numbers; ";
-  }
-  const std::optional<float> unmatched =
-      stored.integer_bits > 8 ? unmatched_value(stored, scale) : std::nullopt;
-  bool has_negative = false;
-  std::size_t count = 0;
-  for_each_value(stored.values, [&](float value) {
-    has_negative = has_negative || value < 0;
-    count += value == unmatched ? 1 : 0;
-  });
-  for_each_value(stored.values, [&](float& value) {
-    value = value == unmatched || (value == 0 && !has_negative) ? kUnknown : value;
-  });
-  if (unmatched && *unmatched != 0) {
-    found += fmt::format(
-        "{:g} (minDisparity - 1 of OpenCV's matchers, {:g} px) is taken as unknown, "
-        "{:.1f} % of the pixels; ",
-        *unmatched, *unmatched / scale,
-        100.0 * static_cast<double>(count) / stored.values.width() / stored.values.height());
-  }
-  if (remarks != nullptr && !found.empty()) {
-    found.resize(found.size() - 2);
-    remarks->push_back({Remark::Kind::kNote, "map", fmt::format("{}: {}", file, found)});
-  }
+  return assumed.substr(0, assumed.size() - std::min<std::size_t>(assumed.size(), 2));
 }
 
 }  // namespace
@@ -119,7 +103,10 @@ Image<float> disparities_of(StoredMap&& stored, double scale, const std::string&
         stored.integer_bits > 8 ? "16 for maps of OpenCV's matchers, " : ""));
   }
   const double divisor = scale > 0 ? scale : stored.default_scale;
-  mark_unknown(stored, divisor, file, remarks);
+  const std::string assumed = mark_unknown(stored, divisor);
+  if (remarks != nullptr && !assumed.empty()) {
+    remarks->push_back({Remark::Kind::kNote, "map", fmt::format("{}: {}", file, assumed)});
+  }
   for_each_value(stored.values, [&](float& value) {
     value = static_cast<float>(static_cast<double>(value) / divisor);
   });

@@ -17,12 +17,12 @@ struct StoredMap {
 };
 
 // Values that are not known become NaN: NaN and ±inf of floats, 0 of integers without negative
-// values, and what OpenCV's matchers write, (minDisparity − 1) · scale. It is recognised as the
-// least value of a file of 16 bits or more if it is −scale, or, at the 1/16 px of these matchers, a
-// whole number of pixels that others, which are not all whole, keep a pixel away from. Unsigned
-// 16-bit values that cannot be disparities of the image (or, at 1/16 px, lie beyond a gap of
-// 1024 px) are negative numbers that were wrapped. What was recognised is one remark. `file`: its
-// name in remarks and messages. Thread rule: pure.
+// values, and what OpenCV's matchers write, (minDisparity − 1) · scale: the least value of
+// integers, at least a pixel below the others, if it is −scale, or, at the 1/16 px of these
+// matchers, a whole number of pixels while others are not. Unsigned 16-bit values from 32768 on are
+// negative numbers that were wrapped if they are 1/16 px, or more than the width of the image. What
+// was recognised is one remark. Neither concerns the default scale of a format. `file`: its name in
+// remarks and messages. Thread rule: pure.
 
 /// Disparities in pixels: floats as they are, integers divided by `scale`; 0: the default. Throws
 /// Error if there is none.
