@@ -16,7 +16,7 @@ ImageFormat detect_image_format(const FileBytes& file);
 /// What a header says of the pixels.
 struct StatedByFile {
   Orientation orientation = Orientation::kAsStored;
-  int signed_bits = 0;                 ///< as of DecodedImage, of TIFF
+  int integer_bits = 0;                ///< as of DecodedImage, of TIFF
   std::optional<double> no_data = {};  ///< the value of pixels that show nothing, of TIFF
 };
 

@@ -226,7 +226,7 @@ DecodedImage decode(const FileBytes& file, const PhotographReading& reading, Pho
       break;
     case ImageFormat::kTiff:
       result.photograph = decode_tiff(file, reading, memory, stated);
-      result.signed_bits = stated.signed_bits;
+      result.integer_bits = stated.integer_bits;
       result.no_data = stated.no_data;
       break;
     default:

@@ -15,7 +15,9 @@ namespace vantage {
 struct DecodedImage {
   Photograph photograph;
   int max_value = 255;  ///< of integer values
-  int signed_bits = 0;  ///< floats were stored as signed integers of so many bits; 0: they were not
+  /// Floats were stored as integers of so many bits, with a sign if they are 16 or fewer; 0: they
+  /// were not.
+  int integer_bits = 0;
   std::optional<double> no_data = {};  ///< the value of pixels without data, where the file has one
 };
 

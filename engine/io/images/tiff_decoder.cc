@@ -394,7 +394,8 @@ Photograph decode_tiff(const FileBytes& file, const PhotographReading& reading, 
     return photograph;
   };
   Photograph photograph = read();
-  stated.signed_bits = layout.format == SAMPLEFORMAT_INT ? layout.bits : 0;
+  const bool are_floats = layout.format == SAMPLEFORMAT_IEEEFP;
+  stated.integer_bits = are_floats || layout.has_8_bits() || layout.has_16_bits() ? 0 : layout.bits;
   stated.no_data = finite_number(tiff.text(kGdalNoData));
   photograph.origin.white_level =
       layout.has_16_bits() && layout.bits < 16 ? std::optional(65535.0) : tiff.white_level();

@@ -30,24 +30,29 @@ StoredMap read_stored(const FileBytes& file, const char* what) {
     file.fail(
         fmt::format("has {} channels, expected a {} map of 1", stored.photograph.channels(), what));
   }
-  return std::visit(
+  StoredMap map = std::visit(
       [&]<typename T>(Image<T>& image) -> StoredMap {
         if constexpr (std::is_same_v<T, float>) {
           return {.values = std::move(image),
-                  .integer_bits = stored.signed_bits,
-                  .is_signed = stored.signed_bits > 0};
+                  .integer_bits = stored.integer_bits,
+                  .is_signed = stored.integer_bits > 0};
         } else {
-          StoredMap map{.values = Image<float>(image.width(), image.height()),
-                        .integer_bits = 8 * static_cast<int>(sizeof(T))};
+          StoredMap integers{.values = Image<float>(image.width(), image.height()),
+                             .integer_bits = 8 * static_cast<int>(sizeof(T))};
           for (int y = 0; y < image.height(); ++y) {
-            std::copy(image.row(y), image.row(y) + image.width(), map.values.row(y));
+            std::copy(image.row(y), image.row(y) + image.width(), integers.values.row(y));
           }
-          map.default_scale =
+          integers.default_scale =
               sizeof(T) == 2 && file.has_at(0, "\x89PNG") ? kIntegerDisparityScale : 0;
-          return map;
+          return integers;
         }
       },
       stored.photograph.pixels);
+  for (int y = 0; stored.no_data && y < map.values.height(); ++y) {
+    std::replace(map.values.row(y), map.values.row(y) + map.values.width(),
+                 static_cast<float>(*stored.no_data), std::numeric_limits<float>::quiet_NaN());
+  }
+  return map;
 }
 
 void require_scale(double scale, const char* what) {

@@ -52,9 +52,12 @@ std::string mark_unknown(StoredMap& stored, double scale) {
   float unmatched = 0;
   bool has_negative = false;
   // Not for maps of a format that says how to read them.
+  std::vector<float> sorted;
   if ((stored.integer_bits > 8 || stored.is_signed) && scale != stored.default_scale) {
-    std::vector<float> sorted = finite_values(stored.values.view());
+    sorted = finite_values(stored.values.view());
     std::ranges::sort(sorted);
+  }
+  if (!sorted.empty()) {
     if (stored.integer_bits == 16 && !stored.is_signed &&
         has_wrapped(sorted, scale, stored.values.width())) {
       const auto unwrap = [](float& v) { v -= v >= kFirstWrapped ? kWrap : 0; };
