@@ -277,10 +277,7 @@ def depth(disparity: _Map, calibration: _Rig = None, **options: Any) -> NDArray[
 
 
 def disparity(depth: _Map, calibration: _Rig = None, **options: Any) -> NDArray[np.float32]:
-    """The opposite of depth(), with its options but max_depth: disparities of depths in metres.
-
-    NaN where a depth is unknown, not above 0, or infinite.
-    """
+    """The opposite of depth(), with its options but max_depth; NaN where no depth is known."""
     return _vantage.disparity(depth, _calibration_of(calibration), options)
 
 
@@ -553,11 +550,8 @@ def read_disparity(path: _Path, scale: float = 0.0) -> NDArray[np.float32]:
 
 
 def read_depth(path: _Path, scale: float = 0.0) -> NDArray[np.float32]:
-    """Reads a depth map of the same formats: float32, metres, NaN where it is unknown.
-
-    scale: values per metre; 0: 1000 for integers, 1 for floats, with a warning that says so.
-    disparity() makes a disparity map of it.
-    """
+    """Reads a depth map of the same formats: float32, metres, NaN unknown. scale: values per metre;
+    0: 1000 for integers, 1 for floats, with a warning. disparity() makes a disparity map of it."""
     return _vantage.read_depth(path, float(scale))
 
 
