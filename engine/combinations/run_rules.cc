@@ -90,7 +90,7 @@ constexpr Rule kRunRules[] = {
      "--kept-outline has no effect without --calibration"},
     {kJob, "kitti-cameras", "unless calibration | unrectified | column calibration",
      "--kitti-cameras has no effect without --calibration"},
-    {kJob, "user in-flight | every | frames", "live",
+    {kJob, "user in-flight | user every | frames", "live",
      "--{option} cannot be used with --live: one frame is in flight, and the time decides which"},
     // A list of pairs whose columns say something of each pair.
     {kPairList, "kept-outline > 0", "unless calibration | column calibration",

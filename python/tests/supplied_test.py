@@ -90,16 +90,15 @@ def test_the_range_and_rows_are_those_of_the_first_pair(images):
 
 def test_a_result_comes_before_the_next_pair(images):
     """Who supplies pairs waits for the result of each; with one thread, too."""
-    done = queue.Queue()
-
-    def answer(index):
+    def answer(done):
         yield images[0]
         for frame in range(1, 4):
             assert done.get(timeout=60) == frame - 1
             yield images[frame]
 
     for threads in [1, 2]:
-        for frame in vantage.Sequence(pairs=answer(0), **OPTIONS, threads=threads):
+        done = queue.Queue()
+        for frame in vantage.Sequence(pairs=answer(done), **OPTIONS, threads=threads):
             done.put(frame.index)
         assert frame.index == 3
 

@@ -218,6 +218,9 @@ void PairSourceOptions::validate() const {
   if (step != 1 && sequence.empty()) {
     throw UsageError(fmt::format("step is {}, expected 1 without sequence", step));
   }
+  if (queue != nullptr && !every.takes_all()) {
+    throw UsageError("every is given, expected it with files only: supply the pairs to take");
+  }
   validate_step(every);
   masks.validate();
 }
