@@ -29,6 +29,7 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
       "sample-pairs", job.sample_pairs, "N",
       "Maximum number of pairs to estimate the cameras from and to measure row errors in");
   add_white_level_setting(settings, job.input.white_level);
+  add_reading_settings(settings, job.input.reading);
   settings.start_group("Output: at least one of these");
   settings
       .path(

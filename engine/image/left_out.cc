@@ -116,9 +116,8 @@ void leave_out_no_data(Photograph& photograph, std::optional<double> no_data) {
     leave_out(photograph, std::move(without_data));
     photograph.origin.remarks.push_back(
         {Remark::Kind::kNote, "no data",
-         no_data ? fmt::format("pixels without data (NaN, or {:g} as the file says) are left out",
-                               *no_data)
-                 : "pixels without data (NaN) are left out"});
+         fmt::format("pixels without data ({}) are left out",
+                     no_data ? fmt::format("{:g}, as the file says", *no_data) : "NaN")});
   }
 }
 

@@ -54,7 +54,8 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
   path("right", input.right, "SOURCE", "Right frames");
   settings.integer("offset", input.offset_frames, "N", "Pair left frame i with right frame i + N");
   path("stereo", input.stereo, "SOURCE",
-       "Frames with both images, see --packing; a stream: - (standard input), a named pipe, "
+       "Frames with both images, see --packing (MPO and JPS need none); a stream: - (standard "
+       "input), a named pipe, "
        "/dev/videoN, tcp://, udp://, rtsp:// or http://");
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),

@@ -84,8 +84,11 @@ void StereoCalibration::validate() const {
 
 void StereoCalibration::check_image_size(int width_px, int height_px) const {
   if (image_size && (image_size->width_px != width_px || image_size->height_px != height_px)) {
-    throw Error(fmt::format("the images are {}x{}, but the calibration is for {}x{}", width_px,
-                            height_px, image_size->width_px, image_size->height_px));
+    const bool is_turned = image_size->width_px == height_px && image_size->height_px == width_px;
+    throw Error(
+        fmt::format("the images are {}x{}, but the calibration is for {}x{}{}", width_px, height_px,
+                    image_size->width_px, image_size->height_px,
+                    is_turned ? " (`orientation` stored leaves images as files hold them)" : ""));
   }
   for (const auto& [name, camera] : {std::pair{"left", &left}, {"right", &right}}) {
     const double cx = camera->matrix(0, 2);

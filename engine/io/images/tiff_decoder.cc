@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <limits>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -397,6 +398,14 @@ Photograph decode_tiff(const FileBytes& file, const PhotographReading& reading, 
   const bool are_floats = layout.format == SAMPLEFORMAT_IEEEFP;
   stated.integer_bits = are_floats || layout.has_8_bits() || layout.has_16_bits() ? 0 : layout.bits;
   stated.no_data = finite_number(tiff.text(kGdalNoData));
+  if (auto* const floats = std::get_if<Image<float>>(&photograph.pixels);
+      floats != nullptr && stated.no_data) {
+    const auto no_data = static_cast<float>(*stated.no_data);
+    for (int y = 0; y < layout.height; ++y) {
+      std::replace(floats->row(y), floats->row(y) + layout.width * floats->channels(), no_data,
+                   std::numeric_limits<float>::quiet_NaN());
+    }
+  }
   photograph.origin.white_level =
       layout.has_16_bits() && layout.bits < 16 ? std::optional(65535.0) : tiff.white_level();
   if (!reading.page && tiff.pages() > 1) {
