@@ -108,7 +108,6 @@ class RepeatedPairs final : public PairSource {
     return source_->describe(index % source_->pair_count());
   }
   [[nodiscard]] std::vector<std::string> remarks() const override { return {}; }
-  [[nodiscard]] int unpaired_frames() const override { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override {
     return source_->frame_rate();
   }

@@ -1,5 +1,6 @@
 // Frames of a sequence, computed ahead of the loop that takes them.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
@@ -147,6 +148,7 @@ class FrameLoop {
       return py::none();
     }
     const FrameSlot& slot = *frame->slot;
+    warn_of_pairing();
     warnings_.warn(source_->white_level().remarks);
     warnings_.warn(slot.match.remarks);
     if (slot.cut && slot.cut->any()) {
@@ -182,6 +184,15 @@ class FrameLoop {
   }
 
  private:
+  void warn_of_pairing() {
+    const std::vector<std::string> remarks = source_->remarks();
+    const Remark remark{Remark::Kind::kWarning, "pairing",
+                        fmt::format("{}", fmt::join(remarks, "; "))};
+    if (!remarks.empty()) {
+      warnings_.warn({&remark, 1});
+    }
+  }
+
   SequenceRun run_of_source() const {
     const SequenceSession& session = opened_->session;
     return session.run(opened_->job, *source_, opened_->shots ? &*opened_->shots : nullptr,

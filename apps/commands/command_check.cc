@@ -11,6 +11,7 @@
 #include "apps/process/child_process.h"
 #include "apps/process/command_work.h"
 #include "apps/process/outputs.h"
+#include "apps/process/tell.h"
 #include "apps/reports/examination_report.h"
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
@@ -69,6 +70,7 @@ void add_check_settings(Settings& settings, CheckJob& job) {
                   "a video; alone: pictures that hold both images")
       .required = true;
   settings.positional("right", job.right, "Right photograph or sequence");
+  add_pair_by_setting(settings, job.input.pair_by);
   settings.choice<StereoPacking>("packing", job.input.packing, stereo_packing_names(),
                                  "Stereo layout of pictures that hold both images, as of 'run'",
                                  "none");
@@ -166,6 +168,10 @@ std::string examine(CheckJob& job, const Settings& settings, Execution& executio
   }
   const int pair_count = session.pairs->pair_count();
   std::string text;
+  for (const std::string& remark : session.pairs->remarks()) {
+    report.add_remark({Remark::Kind::kNote, "pairing", remark});
+    text += table_line("note", with_dashes(remark));
+  }
   for (const int index : sampled_pairs(pair_count, kMaxExamined)) {
     report.timed_file_access("read", [&] { read_equal_pair(*session.pairs, index, pair); });
     const bool is_first = checked.values.empty();

@@ -18,6 +18,7 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
       .required = true;
   settings.positional("right", job.input.right, "Right photograph or photographs of the same size")
       .required = true;
+  add_pair_by_setting(settings, job.input.pair_by);
   settings.input_path(
       "calibration", job.calibration, "FILE",
       "Cameras: OpenCV, Middlebury or KITTI file; default: estimated from the images");

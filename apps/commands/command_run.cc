@@ -180,8 +180,9 @@ int command_run(const Arguments& arguments) {
                             sequence.frames, sequence.frames == 1 ? "" : "s",
                             sequence.frames == 1 ? "is" : "are"));
   }
-  if (session.pairs->unpaired_frames() > 0 && RunSession::part_name(job) == "all") {
-    // All frames with a partner are done, but the user must know that others are missing.
+  const Pairing pairing = session.pairs->pairing();
+  if (pairing.by == PairBy::kOrder && !pairing.is_whole() && RunSession::part_name(job) == "all") {
+    // All frames with a partner are done, but which frames are missing is not known.
     if (!job.keep_going) {
       throw Error(fmt::format("all {} pairs are done, but {}", session.selection.frame_count,
                               fmt::join(session.pairs->remarks(), "; ")));

@@ -226,7 +226,7 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
   report.write(job.common.report);
   if (!job.common.quiet) {
     for (const std::string& remark : pairs->remarks()) {
-      tell("rectify: note: {}\n", remark);
+      tell("rectify: note: {}\n", with_dashes(remark));
     }
     print_results(rectification, rectifier.pair(), pair_count, job.calibration);
     report.print_summary();

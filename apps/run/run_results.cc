@@ -105,6 +105,17 @@ SettingValue depth_resolution_of(const RunJob& job, const DeliveredFrames& deliv
   return values;
 }
 
+/// How the frames of several cameras became pairs; null where there is one source.
+SettingValue pairing_of(const PairSource& pairs) {
+  const Pairing pairing = pairs.pairing();
+  if (pairing.left_out.empty()) {
+    return nullptr;
+  }
+  const auto name =
+      std::ranges::find(pair_by_names(), pairing.by, &std::pair<std::string_view, PairBy>::second);
+  return {{"by", name->first}, {"frames_left_out", pairing.left_out}};
+}
+
 /// The mean of all frames, and each frame's.
 SettingValue maps_of(const SequenceReport& sequence) {
   SettingValue values = map_values(mean_shares(sequence));
@@ -157,6 +168,7 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
                           {"skipped", remark_values(sequence.skipped)},
                           {"remarks", remark_values(sequence.remarks)},
                           {"pairing", session.pairs->remarks()},
+                          {"paired", pairing_of(*session.pairs)},
                           {"frames_maybe_cut", sequence.frames_maybe_cut},
                           {"sound_problem", sound_problem},
                           {"in_flight", sequence.in_flight},

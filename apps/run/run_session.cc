@@ -311,7 +311,7 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
           ? ""
           : fmt::format("; this part: {}", own.empty() ? "none" : "frames " + to_string({own}))));
   for (const std::string& remark : session.pairs->remarks()) {
-    line("note: " + remark);
+    line("note: " + with_dashes(remark));
   }
   if (session.identity.times_at(job.sequence.frame_rate) != nullptr && job.output != "-" &&
       SequenceLayout(job.output, job.sequence).has_videos()) {

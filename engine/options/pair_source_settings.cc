@@ -52,7 +52,9 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
   path("left", input.left, "SOURCE",
        "Left frames: a folder, pattern (left/%06d.png), glob, video or stream (see --stereo)");
   path("right", input.right, "SOURCE", "Right frames");
-  settings.integer("offset", input.offset_frames, "N", "Pair left frame i with right frame i + N");
+  settings.integer("offset", input.offset_frames, "N",
+                   "Pair left frame i with right frame i + N, counted from the first of each");
+  add_pair_by_setting(settings, input.pair_by);
   path("stereo", input.stereo, "SOURCE",
        "Frames with both images, see --packing (MPO and JPS need none); a stream: - (standard "
        "input), a named pipe, "
@@ -82,6 +84,15 @@ void add_reading_settings(Settings& settings, PhotographReading& reading) {
   settings.integer("band", reading.band, "N",
                    "Read band N, counted from 1, of images of several; auto: grey or RGB, of other "
                    "bands their mean");
+}
+
+void add_pair_by_setting(Settings& settings, std::optional<PairBy>& pair_by) {
+  settings.choice<PairBy>("pair-by", pair_by, pair_by_names(),
+                          "What tells which frames of two folders or films belong together: their "
+                          "names (numbers, stems, time stamps within half a frame), times of films "
+                          "or time stamps, or their order. A frame without a partner is left out. "
+                          "auto: name, of films time; order where these tell nothing and the "
+                          "numbers of frames agree");
 }
 
 void add_white_level_setting(Settings& settings, std::optional<double>& white_level) {

@@ -58,7 +58,6 @@ class TwoShots : public PairSource {
   [[nodiscard]] int pair_count() const override { return kFrames; }
   [[nodiscard]] std::string describe(int index) const override { return std::to_string(index); }
   [[nodiscard]] std::vector<std::string> remarks() const override { return {}; }
-  [[nodiscard]] int unpaired_frames() const override { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override { return {}; }
   [[nodiscard]] Sound sound() const override { return {}; }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {}; }

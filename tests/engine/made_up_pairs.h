@@ -54,7 +54,6 @@ class MadeUpPairs : public PairSource {
     return "left " + std::to_string(index) + ", right " + std::to_string(index);
   }
   [[nodiscard]] std::vector<std::string> remarks() const override { return {}; }
-  [[nodiscard]] int unpaired_frames() const override { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override { return {}; }
   [[nodiscard]] Sound sound() const override { return {}; }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {}; }

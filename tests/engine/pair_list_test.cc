@@ -48,6 +48,33 @@ TEST(PairList, Quotes) {
   EXPECT_THAT(parsed("\"left\",\"right\"\na,b"), ElementsAre("a|b"));
 }
 
+TEST(PairList, OtherSeparators) {
+  EXPECT_THAT(parsed("a,1.png;b 1.png\nc.png;d.png"), ElementsAre("a,1.png|b 1.png", "c.png|d.png"))
+      << "of a German spreadsheet";
+  EXPECT_THAT(parsed("left\tright\na b\tc d"), ElementsAre("a b|c d"));
+  EXPECT_THAT(parsed("a.png  b.png \n \"c d\" e.png"), ElementsAre("a.png|b.png", "c d|e.png"));
+  const auto pairs = parse_pair_list("name;left;right\r\ngate;a;b\r\n;c;d", "list.csv");
+  EXPECT_EQ(pairs.at(0).details.name, "gate");
+  EXPECT_EQ(pairs.at(1).right, "d");
+  EXPECT_THAT(problem("a;b;c"), HasSubstr("3 fields, expected two: left,right; further columns"));
+  EXPECT_EQ(problem("a;b\nc\n"), "list.csv line 2: 1 field, expected two: left,right");
+}
+
+TEST(PairList, AFirstLineWithoutFilesIsAHeading) {
+  const TemporaryFolder folder;
+  put_text(folder / "a.png", "");
+  put_text(folder / "list.csv", "file_left,file_right\na.png,a.png\nb.png,a.png\n");
+  std::vector<std::string> remarks;
+  EXPECT_EQ(read_pair_list(folder / "list.csv", &remarks).size(), 2U);
+  EXPECT_THAT(remarks,
+              ElementsAre(HasSubstr("'file_left' and 'file_right' are taken for a heading")));
+  // A missing image is one, and nothing tells that a line is a heading where no other has files.
+  put_text(folder / "list.csv", "b.png,a.png\na.png,a.png\n");
+  EXPECT_EQ(read_pair_list(folder / "list.csv").size(), 2U);
+  put_text(folder / "list.csv", "file_left,file_right\nb.png,c.png\n");
+  EXPECT_EQ(read_pair_list(folder / "list.csv").size(), 2U);
+}
+
 TEST(PairList, MalformedLinesAreNamed) {
   EXPECT_EQ(problem("a,b\n\n#\nc\n"), "list.csv line 4: 1 field, expected two: left,right");
   EXPECT_EQ(problem("a,b,c"),

@@ -185,7 +185,7 @@ TEST(PairSource, LeftImagesAlone) {
   }
 }
 
-TEST(PairSource, TwoFoldersByIndex) {
+TEST(PairSource, TwoFolders) {
   const TemporaryFolder folder;
   put_images(folder / "l", {0, 1, 2, 3});
   put_images(folder / "r", {100, 101, 102, 103});
@@ -193,7 +193,7 @@ TEST(PairSource, TwoFoldersByIndex) {
   const auto source = open_pair_source(options);
   EXPECT_EQ(source->pair_count(), 4);
   EXPECT_EQ(source->describe(1), folder / "l/000001.png" + ", " + folder / "r/000001.png");
-  EXPECT_EQ(source->unpaired_frames(), 0);
+  EXPECT_THAT(source->pairing().left_out, ElementsAre(0, 0));
   EXPECT_THAT(source->remarks(), IsEmpty());
   EXPECT_EQ(source->frames_kept(), 0);
   EXPECT_EQ(source->frame_rate(), std::nullopt);
@@ -211,7 +211,7 @@ TEST(PairSource, Offsets) {
   PairSourceOptions options = two_cameras(folder / "l", folder / "r");
   options.offset_frames = 1;
   EXPECT_EQ(pairs_of(options), (Values{{0, 101}, {1, 102}, {2, 103}}));
-  EXPECT_EQ(open_pair_source(options)->unpaired_frames(), 0);
+  EXPECT_TRUE(open_pair_source(options)->pairing().is_whole());
   EXPECT_THAT(open_pair_source(options)->remarks(), IsEmpty());
   expect_to_skip_everywhere(options);
   options.offset_frames = -3;
@@ -231,7 +231,11 @@ TEST(PairSource, UnequalLengths) {
   PairSourceOptions options = two_cameras(folder / "l", folder / "r");
   const auto unpaired = [&](int offset_frames) {
     options.offset_frames = offset_frames;
-    return open_pair_source(options)->unpaired_frames();
+    options.pair_by = std::nullopt;
+    const Pairing by_name = open_pair_source(options)->pairing();
+    options.pair_by = PairBy::kOrder;
+    EXPECT_EQ(open_pair_source(options)->pairing().left_out, by_name.left_out) << offset_frames;
+    return by_name.left_out[0] + by_name.left_out[1];
   };
   EXPECT_EQ(unpaired(0), 2);
   EXPECT_THAT(open_pair_source(options)->remarks(),
@@ -257,6 +261,13 @@ TEST(PairSource, GapsInTheNumbersAreRemarked) {
   put_images(folder / "l", {0, 1, -1, 3, 4, 5, 6});
   put_images(folder / "r", {0, 1, -1, 3, -1, 5, 6});
   PairSourceOptions options = two_cameras(folder / "l", folder / "r");
+  EXPECT_THAT(open_pair_source(options)->remarks(),
+              ElementsAre("1 frame is left out without a partner (1 of the left): " +
+                              (folder / "l/000004.png"),
+                          "1 frame number is missing on both sides: 2"));
+  EXPECT_EQ(pairs_of(options), (Values{{0, 0}, {1, 1}, {3, 3}, {5, 5}, {6, 6}}));
+  expect_to_skip_everywhere(options);
+  options.pair_by = PairBy::kOrder;
   EXPECT_THAT(open_pair_source(options)->remarks(),
               ElementsAre(HasSubstr("the left sequence has 1 frame more"),
                           "1 frame number is missing on both sides: 2",
@@ -312,9 +323,10 @@ TEST(PairSource, TwoVideos) {
   put_video(folder / "r.mp4", counting(30, 6), {30, 1});
   PairSourceOptions options = two_cameras(folder / "l.mp4", folder / "r.mp4");
   options.offset_frames = -1;
+  options.pair_by = PairBy::kOrder;
   const auto source = open_pair_source(options);
   EXPECT_EQ(source->pair_count(), 6);
-  EXPECT_EQ(source->unpaired_frames(), 0);
+  EXPECT_TRUE(source->pairing().is_whole());
   EXPECT_EQ(source->describe(2), folder / "l.mp4" + " frame 3, " + folder / "r.mp4" + " frame 2");
   EXPECT_EQ(source->frame_rate(), (FrameRate{25, 1}));
   EXPECT_EQ(source->sound().file, folder / "l.mp4");
@@ -471,7 +483,7 @@ TEST(PairSource, OneMovingCameraFromImages) {
   EXPECT_EQ(pairs_of(options), (Values{{2, 0}, {3, 1}, {4, 2}}));
   EXPECT_EQ(open_pair_source(options)->describe(1),
             folder / "s/000003.png" + ", " + folder / "s/000001.png");
-  EXPECT_EQ(open_pair_source(options)->unpaired_frames(), 0);
+  EXPECT_TRUE(open_pair_source(options)->pairing().is_whole());
   expect_to_skip_everywhere(options);
   put_text(folder / "s/000002.png", "garbage");
   EXPECT_EQ(pairs_of(options), (Values{kBad, {3, 1}, kBad}));

@@ -49,6 +49,12 @@ class MadeUpVideo : public FrameSource {
   int next_ = 0;
 };
 
+TwoCameraPairs paired(std::unique_ptr<FrameSource> left, std::unique_ptr<FrameSource> right,
+                      int offset_frames) {
+  FramePairing pairing = pair_frames({left.get(), right.get()}, offset_frames, std::nullopt);
+  return TwoCameraPairs(std::move(left), std::move(right), std::move(pairing));
+}
+
 /// "0 1" for the values of a pair, or what is wrong.
 std::vector<std::string> outcomes_of(PairSource& source) {
   std::vector<std::string> outcomes;
@@ -82,7 +88,7 @@ TEST(TwoCameraPairs, BothSidesStayInStepBehindABadFrame) {
   auto right = std::make_unique<MadeUpVideo>("r", 5);
   left->bad = {1, 3};
   right->bad = {2, 3};
-  TwoCameraPairs pairs(std::move(left), std::move(right), 0, true);
+  TwoCameraPairs pairs = paired(std::move(left), std::move(right), 0);
   EXPECT_THAT(outcomes_of(pairs),
               ElementsAre("0 0", "1: l 1 is bad", "2: r 2 is bad", "3: l 3 is bad", "4 4"));
 }
@@ -91,7 +97,7 @@ TEST(TwoCameraPairs, EndsWithTheSideThatEndsFirst) {
   auto left = std::make_unique<MadeUpVideo>("l", 5);
   auto right = std::make_unique<MadeUpVideo>("r", 5);
   right->true_count = 3;
-  TwoCameraPairs pairs(std::move(left), std::move(right), 1, true);
+  TwoCameraPairs pairs = paired(std::move(left), std::move(right), 1);
   EXPECT_EQ(pairs.pair_count(), 4);
   EXPECT_THAT(outcomes_of(pairs), ElementsAre("0 1", "1 2"));
 }
@@ -101,7 +107,7 @@ TEST(TwoCameraPairs, FramesMissingOnOneSideAreRemarked) {
   auto right = std::make_unique<MadeUpVideo>("r", 6);
   left->missing = {{1, 2}, {3, 1}};
   right->missing = {{3, 1}, {4, 1}};
-  TwoCameraPairs pairs(std::move(left), std::move(right), 0, true);
+  TwoCameraPairs pairs = paired(std::move(left), std::move(right), 0);
   const std::map<int, std::vector<std::string>> remarks = remarks_of(pairs);
   ASSERT_EQ(remarks.size(), 3U);
   EXPECT_THAT(
@@ -183,7 +189,7 @@ TEST(TurnsOfPictures, TwoSuccessiveOnesAreAPair) {
     EXPECT_EQ(outcomes_of(*pairs), all);
     EXPECT_EQ(counted.fetched, 8);
     EXPECT_THAT(pairs->remarks(), ElementsAre(HasSubstr("v 8 has no partner")));
-    EXPECT_EQ(pairs->unpaired_frames(), 0);
+    EXPECT_TRUE(pairs->pairing().is_whole());
     for (int first = 3; first >= 0; --first) {
       pairs->skip_to(first);
       EXPECT_EQ(outcomes_of(*pairs), std::vector(all.begin() + first, all.end()));

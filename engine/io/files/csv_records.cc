@@ -11,7 +11,6 @@
 namespace vantage {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool ends_line(char c) { return c == '\n' || c == '\r'; }
 
 }  // namespace
@@ -29,8 +28,8 @@ bool equals_ignoring_case(std::string_view text, std::string_view lower_case) {
   return true;
 }
 
-CsvRecords::CsvRecords(std::string_view text, std::string file)
-    : text_(text), file_(std::move(file)) {
+CsvRecords::CsvRecords(std::string_view text, std::string file, char separator)
+    : text_(text), file_(std::move(file)), separator_(separator) {
   if (text.find('\0') != std::string_view::npos) {
     throw Error(fmt::format("{}: holds a zero byte, expected UTF-8 text", file_));
   }
@@ -47,8 +46,14 @@ bool CsvRecords::next(std::vector<std::string>& fields) {
   }
   record_line_ = line_;
   fields.push_back(read_field());
-  while (!at_end() && text_[position_] == ',') {
+  while (!at_end() && text_[position_] == separator_) {
     ++position_;
+    if (separator_ == ' ') {
+      skip_blanks();
+      if (at_end() || ends_line(text_[position_])) {
+        break;
+      }
+    }
     fields.push_back(read_field());
   }
   skip_line_end();
@@ -86,14 +91,15 @@ void CsvRecords::skip_lines_without_record() {
   }
 }
 
-// Ends at a comma, the end of the line or the end of the text.
+// Ends at a separator, the end of the line or the end of the text.
 std::string CsvRecords::read_field() {
   skip_blanks();
   return !at_end() && text_[position_] == '"' ? read_quoted() : read_unquoted();
 }
 
 std::string CsvRecords::read_unquoted() {
-  const std::size_t end = std::min(text_.find_first_of(",\r\n", position_), text_.size());
+  const char ends[] = {separator_, '\r', '\n', '\0'};
+  const std::size_t end = std::min(text_.find_first_of(ends, position_), text_.size());
   std::string_view field = text_.substr(position_, end - position_);
   position_ = end;
   while (!field.empty() && is_blank(field.back())) {
@@ -125,9 +131,11 @@ std::string CsvRecords::read_quoted() {
     field.push_back(c);
   }
   ++position_;
-  skip_blanks();
-  if (!at_end() && text_[position_] != ',' && !ends_line(text_[position_])) {
-    fail(line_, "text after a closing quote, expected a comma or the end of the line");
+  if (separator_ != ' ') {
+    skip_blanks();
+  }
+  if (!at_end() && text_[position_] != separator_ && !ends_line(text_[position_])) {
+    fail(line_, "text after a closing quote, expected a separator or the end of the line");
   }
   return field;
 }

@@ -7,14 +7,14 @@
 
 namespace vantage {
 
-/// Reads comma-separated values record by record. Fields may be quoted ("" is a quote in one);
-/// skips blanks around them, empty lines, lines that start with # and a byte order mark. Lines end
-/// with LF, CRLF or CR. Thread rule: one thread at a time.
+/// Reads values separated by commas, or another character, record by record. Fields may be quoted
+/// ("" is a quote in one); skips blanks around them, empty lines, lines that start with # and a
+/// byte order mark. Lines end with LF, CRLF or CR. Thread rule: one thread at a time.
 class CsvRecords {
  public:
-  /// `text` must outlive this object. `file`: its name in messages. Throws Error for text with a
-  /// zero byte.
-  CsvRecords(std::string_view text, std::string file);
+  /// `text` must outlive this object. `file`: its name in messages. A blank as `separator` is any
+  /// number of them. Throws Error for text with a zero byte.
+  CsvRecords(std::string_view text, std::string file, char separator = ',');
 
   /// The fields of the next record; false at the end. Throws Error naming file and line for a
   /// misplaced quote.
@@ -28,6 +28,9 @@ class CsvRecords {
 
  private:
   [[nodiscard]] bool at_end() const { return position_ == text_.size(); }
+  [[nodiscard]] bool is_blank(char c) const {
+    return c == ' ' || (c == '\t' && separator_ != '\t');
+  }
   void skip_blanks();
   void skip_line_end();
   void skip_lines_without_record();
@@ -37,6 +40,7 @@ class CsvRecords {
 
   std::string_view text_;
   std::string file_;
+  char separator_;
   std::size_t position_ = 0;
   int line_ = 1;
   int record_line_ = 1;

@@ -106,6 +106,15 @@ FrameTimes FrameTimes::some(int first, int count, int step) const {
   return chosen;
 }
 
+FrameTimes FrameTimes::of(const std::vector<int>& frames) const {
+  FrameTimes chosen{{}, unit_numerator, unit_denominator, rate};
+  for (const int frame : frames) {
+    chosen.times.push_back(times[static_cast<std::size_t>(frame)]);
+  }
+  chosen.times.push_back(times[static_cast<std::size_t>(frames.back()) + 1]);
+  return chosen;
+}
+
 bool are_uneven(const std::vector<std::int64_t>& times, double unit_seconds, FrameRate rate) {
   constexpr double kMaxFramesOff = 0.25;
   const double frames_per_unit = unit_seconds * rate.per_second();

@@ -20,6 +20,13 @@ struct FrameRate {
   friend bool operator==(const FrameRate&, const FrameRate&) = default;
 };
 
+/// When the first frame of a film is shown.
+struct FilmStart {
+  double seconds = 0;
+  /// The container counts from a moment of its own (MPEG streams), not from 0.
+  bool has_clock = false;
+};
+
 /// Parses "25", "29.97" or "30000/1001"; empty for any other form or out of range. Decimals within
 /// 5 millionths of N·1000/1001 (integer N) are read as that: 29.97 is 30000/1001.
 std::optional<FrameRate> parse_frame_rate(std::string_view text);
@@ -41,6 +48,8 @@ struct FrameTimes {
   /// Those of `count` frames: `first` and every `step`-th after it, which must exist. Each is shown
   /// until the next one.
   [[nodiscard]] FrameTimes some(int first, int count, int step = 1) const;
+  /// Those of some frames, ascending, at least one; the last is as long as before.
+  [[nodiscard]] FrameTimes of(const std::vector<int>& frames) const;
 
   friend bool operator==(const FrameTimes&, const FrameTimes&) = default;
 };

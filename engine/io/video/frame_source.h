@@ -74,6 +74,9 @@ class FrameSource {
   /// Of a film as it states it; of image files the default.
   [[nodiscard]] virtual FilmFormat film_format() const { return {}; }
 
+  /// Of a film that knows when each of its frames is shown: from frame_times(), or by its rate.
+  [[nodiscard]] virtual std::optional<FilmStart> start() const { return std::nullopt; }
+
   /// The video file, which may hold sound; empty for image files.
   [[nodiscard]] virtual std::filesystem::path video_file() const { return {}; }
 

@@ -29,6 +29,7 @@ class VideoFrames : public FrameSource {
     return reader_->frame_times();
   }
   [[nodiscard]] FilmFormat film_format() const override { return reader_->film_format(); }
+  [[nodiscard]] std::optional<FilmStart> start() const override { return reader_->start(); }
   [[nodiscard]] std::filesystem::path video_file() const override { return name_; }
   [[nodiscard]] std::string identity() const override;
 

@@ -34,6 +34,8 @@ class VideoReader {
   [[nodiscard]] const std::optional<FrameTimes>& frame_times() const;
   /// What the film states of its pictures.
   [[nodiscard]] const FilmFormat& film_format() const;
+  /// Empty if it is not known when each frame is shown.
+  [[nodiscard]] std::optional<FilmStart> start() const;
   /// Frames in the index of an MP4 or MOV; in other containers the packets of the video are
   /// counted, which reads the whole file. Interlaced videos may have fewer, as may recordings that
   /// start mid-programme, by up to a fiftieth. In a truncated file without index, the incomplete

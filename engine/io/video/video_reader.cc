@@ -207,6 +207,7 @@ const std::optional<FrameTimes>& VideoReader::frame_times() const {
   return state_->timing.frame_times;
 }
 const FilmFormat& VideoReader::film_format() const { return state_->format; }
+std::optional<FilmStart> VideoReader::start() const { return state_->timing.start; }
 int VideoReader::frame_count() const { return state_->timing.frames; }
 int VideoReader::frames_missing() const { return state_->frames_missing; }
 

@@ -247,12 +247,21 @@ VideoTiming examine_video_timing(AVFormatContext& input, AVStream& stream,
   std::ranges::sort(packets.times);
   const std::int64_t step = usual_step(packets.times);
   timing.rate = choose_rate(stream, static_cast<double>(step) * av_q2d(stream.time_base));
-  if (timing.rate && !is_interlaced(stream) &&
-      are_uneven(packets.times, av_q2d(stream.time_base), *timing.rate)) {
+  const double unit_s = av_q2d(stream.time_base);
+  const bool is_uneven = timing.rate && are_uneven(packets.times, unit_s, *timing.rate);
+  if (is_uneven && !is_interlaced(stream)) {
     if (from_index && stream.codecpar->video_delay > 0) {
       packets = read_packets(path, stream.index, is_whole);  // the index has times of decoding
     }
-    timing.frame_times = variable_times(std::move(packets), timing, stream, step);
+    timing.frame_times = variable_times(packets, timing, stream, step);
+  }
+  if (timing.rate && !packets.times.empty() && (timing.frame_times || !is_uneven)) {
+    // The index has times of decoding.
+    const std::int64_t first = from_index && stream.start_time != AV_NOPTS_VALUE
+                                   ? stream.start_time
+                                   : std::ranges::min(packets.times);
+    timing.start = {.seconds = static_cast<double>(first) * unit_s,
+                    .has_clock = (input.iformat->flags & AVFMT_TS_DISCONT) != 0};
   }
   return timing;
 }

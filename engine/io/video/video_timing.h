@@ -38,6 +38,8 @@ struct VideoTiming {
   std::vector<PossibleStart> starts;
   /// Set for progressive video of variable rate that knows the times of all its frames.
   std::optional<FrameTimes> frame_times;
+  /// Set for video that knows the times of all its frames: those, or those of the rate.
+  std::optional<FilmStart> start;
 };
 
 /// Reads the index of an MP4 or MOV, and all packets of the video in other containers, and where

@@ -30,7 +30,7 @@ class ForwardedPairs : public PairSource {
   [[nodiscard]] PairDetails details(int index) const override { return source_->details(index); }
   [[nodiscard]] std::string describe(int index) const override { return source_->describe(index); }
   [[nodiscard]] std::vector<std::string> remarks() const override { return source_->remarks(); }
-  [[nodiscard]] int unpaired_frames() const override { return source_->unpaired_frames(); }
+  [[nodiscard]] Pairing pairing() const override { return source_->pairing(); }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override {
     return source_->frame_rate();
   }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <set>
 #include <string_view>
 
 namespace vantage {
@@ -165,6 +166,27 @@ std::vector<std::string> numbering_remarks(const FrameSpan& frames) {
   add_gaps(gaps_of(numbering), extent_of(frames), remarks);
   add_duplicates(frames, numbering, remarks);
   return remarks;
+}
+
+std::vector<std::string> numbers_missing_on_both(const std::vector<double>& numbers) {
+  const std::set<long long> different(numbers.begin(), numbers.end());
+  Numbering numbering{{different.begin(), different.end()}};
+  numbering.increment = usual_increment(numbering.numbers);
+  std::vector<std::string> remarks;
+  add_gaps(gaps_of(numbering), "on both sides", remarks);
+  return remarks;
+}
+
+bool numbers_shift(const FrameSpan& left, const FrameSpan& right) {
+  const Numbering l = numbering_of(left);
+  const Numbering r = numbering_of(right);
+  for (std::size_t i = 1; l.increment > 0 && l.increment == r.increment && i < l.numbers.size();
+       ++i) {
+    if (r.numbers[i] - r.numbers[0] != l.numbers[i] - l.numbers[0]) {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::vector<std::string> numbering_remarks(const FrameSpan& left, const FrameSpan& right) {

@@ -18,8 +18,15 @@ struct FrameSpan {
 /// if the numbers do not increase evenly (time stamps, say) or there are none.
 std::vector<std::string> numbering_remarks(const FrameSpan& frames);
 
-/// As above for two sequences (of equal count) paired by index: gaps in both are dropped frames; a
-/// gap in only one shifts the pairs after it.
+/// Remarks on numbers that are missing among those of all frames of several cameras, likewise.
+std::vector<std::string> numbers_missing_on_both(const std::vector<double>& numbers);
+
+/// Whether the numbers of two sequences (of equal count) both increase evenly, by the same, but not
+/// alike: paired by index, they are not of the same moments from some pair on.
+bool numbers_shift(const FrameSpan& left, const FrameSpan& right);
+
+/// Remarks on the file numbers of two sequences (of equal count) paired by index: gaps in both are
+/// dropped frames; a gap in only one shifts the pairs after it.
 std::vector<std::string> numbering_remarks(const FrameSpan& left, const FrameSpan& right);
 
 }  // namespace vantage

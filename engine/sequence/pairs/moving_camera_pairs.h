@@ -26,7 +26,6 @@ class MovingCameraPairs : public PairSource {
   }
   [[nodiscard]] std::string describe(int index) const final;
   [[nodiscard]] std::vector<std::string> remarks() const final;
-  [[nodiscard]] int unpaired_frames() const final { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const final;
   [[nodiscard]] std::optional<FrameTimes> frame_times() const final;
   [[nodiscard]] FilmFormat film_format() const final { return source_->film_format(); }
@@ -73,8 +72,8 @@ class MovingCameraImages : public MovingCameraPairs {
   int next_index_ = 0;
 };
 
-/// A video or a stream: every frame is decoded once and its picture kept until it has been the earlier one of a
-/// pair. Each of its two pairs makes its own photograph of it.
+/// A video or a stream: every frame is decoded once and its picture kept until it has been the
+/// earlier one of a pair. Each of its two pairs makes its own photograph of it.
 class MovingCameraVideo : public MovingCameraPairs {
  public:
   MovingCameraVideo(std::unique_ptr<FrameSource> source, SuccessiveFrames pairs);

@@ -18,7 +18,6 @@ class PackedPairs : public PairSource {
   [[nodiscard]] int pair_count() const override { return source_->frame_count(); }
   [[nodiscard]] std::string describe(int index) const override { return source_->describe(index); }
   [[nodiscard]] std::vector<std::string> remarks() const override;
-  [[nodiscard]] int unpaired_frames() const override { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override {
     return source_->frame_rate();
   }

@@ -17,6 +17,7 @@
 #include "engine/io/files/csv_records.h"
 #include "engine/io/files/encoded_text.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/video/image_sequence.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {
@@ -41,6 +42,26 @@ bool is_heading(const std::vector<std::string>& fields) {
         fields, [&](const std::string& field) { return equals_ignoring_case(field, column); });
   };
   return has("left") && has("right");
+}
+
+/// The first of these by which the first record is a pair or a heading, else one that it has.
+char separator_of(std::string_view text, const fs::path& file) {
+  std::optional<char> seen;
+  for (const char separator : {',', ';', '\t', ' '}) {
+    try {
+      std::vector<std::string> fields;
+      CsvRecords(text, file.string(), separator).next(fields);
+      if (fields.size() == 2 || is_heading(fields)) {
+        return separator;
+      }
+      if (!seen && fields.size() > 1 && separator != ' ') {
+        seen = separator;
+      }
+    } catch (const Error&) {
+      continue;  // of a quote, said later
+    }
+  }
+  return seen.value_or(',');
 }
 
 Places places_of(const std::vector<std::string>& fields, const CsvRecords& records) {
@@ -140,7 +161,7 @@ void require_different_names(const std::vector<ListedPair>& pairs, const std::ve
 }  // namespace
 
 std::vector<ListedPair> parse_pair_list(std::string_view text, const fs::path& file) {
-  CsvRecords records(text, file.string());
+  CsvRecords records(text, file.string(), separator_of(text, file));
   std::vector<ListedPair> pairs;
   std::vector<int> lines;  // of the pairs
   std::vector<std::string> fields;
@@ -186,8 +207,29 @@ std::vector<ListedPair> parse_pair_list(std::string_view text, const fs::path& f
   return pairs;
 }
 
-std::vector<ListedPair> read_pair_list(const fs::path& file) {
-  return parse_pair_list(read_file_text(file), file);
+std::vector<ListedPair> read_pair_list(const fs::path& file, std::vector<std::string>* remarks) {
+  std::vector<ListedPair> pairs = parse_pair_list(read_file_text(file), file);
+  const auto is_there = [&](const fs::path& image) {
+    std::error_code ignored;
+    return fs::exists(file.parent_path() / image, ignored);
+  };
+  const auto may_be_image = [&](const fs::path& name) {
+    return has_image_extension(name) || is_there(name);
+  };
+  const ListedPair first = pairs.front();
+  if (!may_be_image(first.left) && !may_be_image(first.right) && first.details == PairDetails() &&
+      std::any_of(pairs.begin() + 1, pairs.end(), [&](const ListedPair& pair) {
+        return is_there(pair.left) && is_there(pair.right);
+      })) {
+    pairs.erase(pairs.begin());
+    if (remarks != nullptr) {
+      remarks->push_back(fmt::format(
+          "{}: '{}' and '{}' are taken for a heading, there are no such "
+          "files",
+          file.string(), quotable(first.left.string()), quotable(first.right.string())));
+    }
+  }
+  return pairs;
 }
 
 }  // namespace vantage

@@ -39,7 +39,8 @@ std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file,
   std::vector<std::filesystem::path> left;
   std::vector<std::filesystem::path> right;
   std::vector<PairDetails> details;
-  for (ListedPair& pair : read_pair_list(file)) {
+  FramePairing pairing{.first = {0, 0}};  // whoever writes a list means it
+  for (ListedPair& pair : read_pair_list(file, &pairing.remarks)) {
     left.push_back(std::move(pair.left));
     right.push_back(std::move(pair.right));
     details.push_back(std::move(pair.details));
@@ -50,8 +51,10 @@ std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file,
     images->set_reading(reading);
     return images;
   };
-  auto pairs = std::make_unique<TwoCameraPairs>(open_column("left", std::move(left)),
-                                                open_column("right", std::move(right)), 0, false);
+  pairing.count = static_cast<int>(left.size());
+  auto pairs =
+      std::make_unique<TwoCameraPairs>(open_column("left", std::move(left)),
+                                       open_column("right", std::move(right)), std::move(pairing));
   pairs->set_details(std::move(details));
   return pairs;
 }
@@ -114,8 +117,8 @@ std::unique_ptr<PairSource> open_streams(const PairSourceOptions& options) {
   std::unique_ptr<StreamInput> right_input = input_of(options.right);
   auto left = video_of(std::move(left_input));
   auto right = video_of(std::move(right_input));
-  return std::make_unique<TwoCameraPairs>(std::move(left), std::move(right), options.offset_frames,
-                                          false);
+  FramePairing pairing = pair_in_order({left.get(), right.get()}, options.offset_frames);
+  return std::make_unique<TwoCameraPairs>(std::move(left), std::move(right), std::move(pairing));
 }
 
 /// The pairs of MPO and JPS files, each of which is read for either side.
@@ -152,15 +155,19 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
     return make_moving_camera_pairs(open_frame_source(options.sequence, options.reading),
                                     {.step = options.step});
   }
-  auto pairs = std::make_unique<TwoCameraPairs>(open_frame_source(options.left, options.reading),
-                                                open_frame_source(options.right, options.reading),
-                                                options.offset_frames, true);
-  if (options.more.empty()) {
-    return pairs;
-  }
+  auto left = open_frame_source(options.left, options.reading);
+  auto right = open_frame_source(options.right, options.reading);
+  std::vector<const FrameSource*> cameras = {left.get(), right.get()};
   std::vector<std::unique_ptr<FrameSource>> more;
   for (const std::string& source : options.more) {
     more.push_back(open_frame_source(source, options.reading));
+    cameras.push_back(more.back().get());
+  }
+  auto pairs = std::make_unique<TwoCameraPairs>(
+      std::move(left), std::move(right),
+      pair_frames(cameras, options.offset_frames, options.pair_by));
+  if (more.empty()) {
+    return pairs;
   }
   return std::make_unique<SeveralCameras>(std::move(pairs), std::move(more));
 }
@@ -170,6 +177,12 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
 bool PairSourceOptions::is_stream() const {
   return std::ranges::any_of(std::array{&stereo, &left, &right, &sequence},
                              [](const std::string* name) { return is_stream_name(*name); });
+}
+
+const std::vector<std::pair<std::string_view, PairBy>>& pair_by_names() {
+  static const std::vector<std::pair<std::string_view, PairBy>> kNames = {
+      {"name", PairBy::kName}, {"time", PairBy::kTime}, {"order", PairBy::kOrder}};
+  return kNames;
 }
 
 void PairSourceOptions::validate() const {
@@ -201,6 +214,9 @@ void PairSourceOptions::validate() const {
   }
   if (!more.empty() && is_stream()) {
     throw UsageError("more is given and left is a stream, expected files");
+  }
+  if (pair_by && (!two_cameras || is_stream())) {
+    throw UsageError("pair-by is given, expected it with files as left and right only");
   }
   if (!more.empty() && !two_cameras) {
     throw UsageError("more is given, expected it with left and right only");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -7,6 +8,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/image/disparity_range.h"
@@ -73,16 +76,38 @@ struct FrameStep {
 
 class PairQueue;
 
+/// What tells which frames of several cameras are of one moment.
+enum class PairBy {
+  kName,   ///< what the names of image files share: numbers, time stamps, stems
+  kTime,   ///< time stamps in names; of films when frames are shown
+  kOrder,  ///< the first with the first, the second with the second
+};
+
+/// Values of `pair-by`.
+const std::vector<std::pair<std::string_view, PairBy>>& pair_by_names();
+
+/// How frames of several cameras became pairs.
+struct Pairing {
+  PairBy by = PairBy::kOrder;
+  /// Frames of each camera without a partner, but for those that follow from offset_frames; empty
+  /// for other sources.
+  std::vector<int> left_out = {};
+
+  [[nodiscard]] bool is_whole() const {
+    return std::ranges::all_of(left_out, [](int frames) { return frames == 0; });
+  }
+};
+
 /// Source of the pairs of a run: exactly one of the five.
 struct PairSourceOptions {
-  /// Two sources of open_frame_source(), or two streams, paired by index: frame i + offset_frames
-  /// of the right one belongs to frame i of the left one. With a negative offset the first
-  /// −offset_frames of the left one have no partner: pair 0 is then the first that has one.
+  /// Two sources of open_frame_source(), or two streams, see pair_frames(): frame i + offset_frames
+  /// of the right one belongs to frame i of the left one where no frame is missing.
   std::string left;
   std::string right;
   int offset_frames = 0;
-  /// With left and right: sources of more cameras, whose frame i belongs to frame i of the left
-  /// one.
+  /// Empty: names of images where they share something, else order; of two films time.
+  std::optional<PairBy> pair_by;
+  /// With left and right: sources of more cameras, paired with the left one without offset.
   std::vector<std::string> more;
   /// One source whose frames hold both images; it may be a stream, see is_stream_name().
   std::string stereo;
@@ -91,7 +116,8 @@ struct PairSourceOptions {
   std::optional<RawVideoShape> raw_video;
   FrameRate raw_rate;
   const std::atomic<bool>* stop = nullptr;  ///< of streams: reading ends once it is set
-  /// A CSV file with the columns left,right: one pair of image files per line. Names are relative
+  /// A CSV file with the columns left,right: one pair of image files per line, see
+  /// parse_pair_list(). Names are relative
   /// to the file's folder; empty lines and lines that start with # are skipped; quotes as in RFC
   /// 4180, blanks around unquoted fields are dropped. A heading names the columns, in any order:
   /// left, right, and for PairDetails name, calibration (relative to the file's folder),
@@ -172,13 +198,10 @@ class PairSource {
   }
   /// "left/000012.png, right/000012.png" or "film.mp4 frame 12".
   [[nodiscard]] virtual std::string describe(int index) const = 0;
-  /// Remarks on the pairing as a whole, one line each: frames left over on one side ("the left
-  /// sequence has 2 frames more than the right one: …"), file numbers that are missing or differ
-  /// between the sides ("left/000018.png is paired with right/000017.png from pair 17 on").
+  /// Remarks on the pairing as a whole, one line each: frames without a partner, file numbers that
+  /// are missing, films that did not start together. They name options as `name`.
   [[nodiscard]] virtual std::vector<std::string> remarks() const = 0;
-  /// Frames without a partner at the end of the longer side; 0 when the lengths agree or follow
-  /// from offset_frames or step.
-  [[nodiscard]] virtual int unpaired_frames() const = 0;
+  [[nodiscard]] virtual Pairing pairing() const { return {}; }
   /// Frame rate of the left or packed video; empty for image files.
   [[nodiscard]] virtual std::optional<FrameRate> frame_rate() const = 0;
   /// Times of all pairs if that video has a variable rate; else empty.

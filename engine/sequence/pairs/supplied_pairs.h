@@ -59,7 +59,6 @@ class SuppliedPairs final : public PairSource {
   bool is_ready(std::chrono::milliseconds longest) override { return queue_->is_ready(longest); }
   [[nodiscard]] std::string describe(int index) const override;
   [[nodiscard]] std::vector<std::string> remarks() const override { return {}; }
-  [[nodiscard]] int unpaired_frames() const override { return 0; }
   [[nodiscard]] std::optional<FrameRate> frame_rate() const override { return std::nullopt; }
   [[nodiscard]] Sound sound() const override { return {}; }
   [[nodiscard]] std::vector<std::filesystem::path> files() const override { return {}; }
