@@ -113,10 +113,11 @@ void check(CheckJob& job, const Settings& settings) {
 }
 
 /// The given options that change results, for another command.
-std::string given_options(const Settings& settings) {
+std::string given_options(const Settings& settings, bool for_one_pair) {
   std::string text;
   for (const Setting& setting : settings.all()) {
-    if (setting.changes_results && !setting.positional && settings.is_set(setting.name)) {
+    if (setting.changes_results && !(for_one_pair && setting.name == "pair-by") &&
+        !setting.positional && settings.is_set(setting.name)) {
       const SettingValue value = setting.get();
       text += " --" + setting.name;
       text += setting.flag        ? ""
@@ -133,7 +134,7 @@ std::string command_of(const CheckJob& job, const Settings& settings, const Chec
   const bool is_exchanged = checked.exchanged_votes > 0;
   const std::string left = shell_word(is_exchanged ? job.right : job.left);
   const std::string right = shell_word(is_exchanged ? job.left : job.right);
-  const std::string options = given_options(settings);
+  const std::string options = given_options(settings, pair_count == 1);
   if (job.right.empty()) {
     return fmt::format("vantage run --stereo {} -o results{}", shell_word(job.left), options);
   }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 namespace vantage {
 namespace {
@@ -48,6 +49,25 @@ class Hash {
 };
 
 }  // namespace
+
+bool have_same_pixels(const Photograph& a, const Photograph& b) {
+  if (a.width() != b.width() || a.height() != b.height() || a.channels() != b.channels()) {
+    return false;
+  }
+  return std::visit(
+      [&](const auto& image) {
+        const auto* other = std::get_if<std::remove_cvref_t<decltype(image)>>(&b.pixels);
+        const std::size_t row_bytes = sizeof(*image.row(0)) *
+                                      static_cast<std::size_t>(image.width()) *
+                                      static_cast<std::size_t>(image.channels());
+        bool are_same = other != nullptr;
+        for (int y = 0; are_same && y < image.height(); ++y) {
+          are_same = std::memcmp(image.row(y), other->row(y), row_bytes) == 0;
+        }
+        return are_same;
+      },
+      a.pixels);
+}
 
 std::uint64_t content_hash(const Photograph& photograph) {
   Hash hash;

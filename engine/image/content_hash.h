@@ -11,4 +11,7 @@ namespace vantage {
 /// storing. Thread rule: pure.
 std::uint64_t content_hash(const Photograph& photograph);
 
+/// Whether two photographs have the same size, depth, channels and pixels. Thread rule: pure.
+bool have_same_pixels(const Photograph& a, const Photograph& b);
+
 }  // namespace vantage

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/image/content_hash.h"
 #include "engine/image/left_out.h"
 #include "engine/matching/worth/map_confidence.h"
 
@@ -133,6 +134,10 @@ void MatchRunner::run(const MatchCall& given, const MatchRequest& request, Dispa
   StageClock clock(times);
   clock.start("noise");
   times.noise = noise_of(given);
+  if (!is_resumed && given.images.size() == 2 &&
+      have_same_pixels(*given.images[0].photograph, *given.images[1].photograph)) {
+    times.warn("images", "left and right are the same picture");
+  }
   const NoiseFilter filter = filter_of(times.noise);
   const auto smoothed = smoothed_.borrow();
   MatchCall call = given;

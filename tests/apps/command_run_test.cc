@@ -135,17 +135,54 @@ TEST_F(RunCommand, NamesTheFrameWhoseSizesDiffer) {
               ElementsAre("disparity/000000.pfm", "disparity/000001.pfm"));
 }
 
-TEST_F(RunCommand, UnequalLengthsAreAnErrorAfterTheCommonFrames) {
+TEST_F(RunCommand, UnequalLengthsInOrderAreAnErrorAfterTheCommonFrames) {
   fs::remove(right_ + name(5));
   fs::remove(right_ + name(4));
-  ProcessResult result = run(folder_ / "out");
+  const Words in_order = {"--pair-by", "order"};
+  ProcessResult result = run(folder_ / "out", in_order);
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(last_line(result), HasSubstr("all 4 pairs are done, but"));
   EXPECT_THAT(last_line(result), HasSubstr("2 frames more"));
   EXPECT_EQ(made_in(folder_ / "out").size(), 4U);
-  result = run(folder_ / "out", {"--resume", "--keep-going"});
+  result = run(folder_ / "out", joined(in_order, {"--resume", "--keep-going"}));
   EXPECT_EQ(result.exit_code, 3) << result.err;
-  succeeds(run(folder_ / "out", {"--resume", "--frames", "0-3"}));
+  succeeds(run(folder_ / "out", joined(in_order, {"--resume", "--frames", "0-3"})));
+}
+
+TEST_F(RunCommand, FramesThatOneCameraDroppedAreLeftOut) {
+  const std::string whole = folder_ / "whole";
+  succeeds(run(whole));
+  fs::remove(left_ + name(1));
+  fs::remove(right_ + name(3));
+  const std::string out = folder_ / "out";
+  const ProcessResult result = succeeds(run(out, {"--report", folder_ / "r.json"}));
+  EXPECT_THAT(result.err, HasSubstr("note: 2 frames are left out without a partner (1 of the left, "
+                                    "1 of the right): "));
+  const auto results = read_json(folder_ / "r.json")["results"];
+  EXPECT_EQ(results["paired"]["by"], "name");
+  EXPECT_THAT(results["paired"]["frames_left_out"], ElementsAre(1, 1));
+  const auto disparity = [&](const std::string& folder, int frame) {
+    return read_file(folder + "/disparity/00000" + std::to_string(frame) + ".pfm");
+  };
+  const int kept[] = {0, 2, 4, 5};
+  EXPECT_EQ(made_in(out).size(), std::size(kept));
+  for (int pair = 0; pair < 4; ++pair) {
+    EXPECT_EQ(disparity(out, pair), disparity(whole, kept[pair])) << pair;
+  }
+  // Parts, and a run that goes on, have the same pairs; other pairs are another run.
+  const std::string parts = folder_ / "parts";
+  for (const char* shard : {"2/2", "1/2"}) {
+    succeeds(run(parts, {"--shard", shard, "--chunk-frames", "1"}));
+  }
+  fs::remove(out + "/disparity/000002.pfm");
+  succeeds(run(out, {"--resume"}));
+  for (int pair = 0; pair < 4; ++pair) {
+    EXPECT_EQ(disparity(parts, pair), disparity(whole, kept[pair])) << pair;
+  }
+  EXPECT_EQ(disparity(out, 2), disparity(whole, 4));
+  EXPECT_THAT(last_line(run(out, {"--resume", "--pair-by", "order"})), HasSubstr("pair-by was"));
+  succeeds(run(folder_ / "every", {"--every", "2"}));
+  EXPECT_EQ(disparity(folder_ / "every", 1), disparity(whole, 4));
 }
 
 TEST_F(RunCommand, InterruptFinishesTheFramesUnderWay) {

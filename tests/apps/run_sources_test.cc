@@ -186,12 +186,13 @@ TEST_F(InputRunSources, UnequalLengths) {
   for (int frame = 15; frame < kFrames; ++frame) {
     fs::remove(file("right", frame));
   }
-  const ProcessResult result = run(out_, {"--quiet"});
+  const Words in_order = {"--pair-by", "order", "--quiet"};
+  const ProcessResult result = run(out_, in_order);
   expect_one_line(result, 1, "run", "all 15 pairs are done");
   EXPECT_THAT(result.err, HasSubstr("5 frames more"));
   EXPECT_EQ(journalled_frames(out_), numbers(0, 15));
-  EXPECT_EQ(run(out_, {"--resume", "--keep-going"}).exit_code, 3);
-  succeeds(run(out_, {"--overwrite", "--frames", "0-14"}));
+  EXPECT_EQ(run(out_, joined(in_order, {"--resume", "--keep-going"})).exit_code, 3);
+  succeeds(run(out_, joined(in_order, {"--overwrite", "--frames", "0-14"})));
 }
 
 class RunVideoSources : public RunSources {

@@ -54,6 +54,17 @@ TEST(ContentHash, EveryPixelAndTheShapeCount) {
   EXPECT_EQ(hashes.size(), static_cast<std::size_t>(pictures));
 }
 
+TEST(ContentHash, PicturesWithTheSamePixels) {
+  const Photograph picture = gradient<std::uint8_t>(33, 4, 3);
+  EXPECT_TRUE(have_same_pixels(picture, gradient<std::uint8_t>(33, 4, 3)));
+  EXPECT_FALSE(have_same_pixels(picture, gradient<std::uint16_t>(33, 4, 3)));
+  EXPECT_FALSE(have_same_pixels(picture, gradient<std::uint8_t>(33, 4, 1)));
+  EXPECT_FALSE(have_same_pixels(picture, gradient<std::uint8_t>(33, 5, 3)));
+  Photograph last = gradient<std::uint8_t>(33, 4, 3);
+  std::get<Image<std::uint8_t>>(last.pixels).at(32, 3, 2) ^= 1;
+  EXPECT_FALSE(have_same_pixels(picture, last));
+}
+
 TEST(ContentHash, SwappedPixelsAndRowsDiffer) {
   Photograph picture = gradient<std::uint8_t>(64, 4, 1);
   const std::uint64_t before = content_hash(picture);
