@@ -33,6 +33,10 @@ void check_number_of_poses(const SequenceJob& job, const FramePair& pair,
   if (!poses || session.pairs->is_stream()) {
     return;
   }
+  if (session.pairs->pairing().counts_frames(0, *poses, session.pairs->input_frames())) {
+    session.poses->count_frames();
+    return;
+  }
   const int last = session.pairs->index_of(session.selection.all().end - 1);
   if (*poses <= last && !job.keep_going) {
     throw Error(fmt::format("{}: has {} poses, expected one for each pair from 0 to {}", job.poses,

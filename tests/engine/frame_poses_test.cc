@@ -32,6 +32,11 @@ TEST(FramePoses, BelongToNumbersOrTimes) {
   EXPECT_EQ(timed.of(pair_of(1, "")).translation.x(), 1);  // a video
   EXPECT_EQ(error_of([&] { (void)timed.of(pair_of(0, "left/10.250.png")); }),
             "poses.txt: the nearest pose to 10.250.png is 0.250 s away, expected at most 0.02 s");
+  FramePoses of_frames(three_poses({}), "poses.txt");
+  of_frames.count_frames();
+  FramePair after_a_gap = pair_of(1, "left/000002.png");
+  after_a_gap.frames = {2, 1};
+  EXPECT_EQ(of_frames.of(after_a_gap).translation.x(), 2);
 }
 
 }  // namespace vantage::frame_poses_test

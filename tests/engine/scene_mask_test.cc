@@ -159,6 +159,10 @@ TEST_F(MaskedPairs, AMaskForEachFrameAndABadOne) {
   EXPECT_DOUBLE_EQ(share_at(*pairs, 2), 0.2);
   EXPECT_THROW(share_at(*pairs, 1), Error);
   EXPECT_EQ(pairs->identities().size(), 3);
+  const auto hidden = folder_.path() / "hidden.png";
+  std::filesystem::rename(folder_.path() / "right" / "1.png", hidden);
+  EXPECT_DOUBLE_EQ(share_at(*open_pair_source(options({.left = masks})), 1), 0.2) << "of frame 2";
+  std::filesystem::rename(hidden, folder_.path() / "right" / "1.png");
   std::filesystem::remove(folder_.path() / "mask" / "2.png");
   EXPECT_THROW(open_pair_source(options({.left = masks})), Error);
 }

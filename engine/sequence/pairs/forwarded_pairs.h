@@ -25,6 +25,9 @@ class ForwardedPairs : public PairSource {
     return source_->pairs_of(input_frames);
   }
   [[nodiscard]] int index_of(int pair) const override { return source_->index_of(pair); }
+  [[nodiscard]] int frame_of(std::size_t camera, int index) const override {
+    return source_->frame_of(camera, index);
+  }
   [[nodiscard]] int input_frames() const override { return source_->input_frames(); }
   [[nodiscard]] int frames_kept() const override { return source_->frames_kept(); }
   [[nodiscard]] PairDetails details(int index) const override { return source_->details(index); }

@@ -42,11 +42,12 @@ const CameraPose& FramePoses::of(const FramePair& pair) const {
   const std::vector<double>& times_s = trajectory_.times_s;
   const std::optional<double> time_s = time_of(pair.fetched[0].file);
   if (times_s.empty() || !time_s) {
-    if (static_cast<std::size_t>(pair.index) >= trajectory_.poses.size()) {
+    const auto number = static_cast<std::size_t>(counts_frames_ ? pair.frames[0] : pair.index);
+    if (number >= trajectory_.poses.size()) {
       throw Error(fmt::format("{}: has {} poses, expected one for pair {} (counted from 0)", file_,
                               trajectory_.poses.size(), pair.index));
     }
-    return trajectory_.poses[static_cast<std::size_t>(pair.index)];
+    return trajectory_.poses[number];
   }
   const auto nearest =
       std::ranges::min_element(times_s, {}, [&](double time) { return std::abs(time - *time_s); });

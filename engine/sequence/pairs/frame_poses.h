@@ -23,10 +23,13 @@ class FramePoses {
   /// The number of poses, if they belong to pairs by number; empty: by time. `pair`: any pair of
   /// the run.
   [[nodiscard]] std::optional<int> numbered(const FramePair& pair) const;
+  /// Their numbers are those of the left camera's frames, of which some are in no pair.
+  void count_frames() { counts_frames_ = true; }
 
  private:
   Trajectory trajectory_;
   std::string file_;
+  bool counts_frames_ = false;
 };
 
 }  // namespace vantage

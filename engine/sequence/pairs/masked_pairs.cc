@@ -73,8 +73,11 @@ bool MaskedPairs::fetch(FramePair& pair) {
     return false;
   }
   for (const std::size_t i : {0, 1}) {
+    pair.frames[i] = source_->frame_of(i, pair.index);
     if (masks_[i] != nullptr) {
-      masks_[i]->skip_to(masks_[i]->frame_count() == 1 ? 0 : pair.index);
+      const int count = masks_[i]->frame_count();
+      const bool is_of_frame = source_->pairing().counts_frames(i, count, source_->input_frames());
+      masks_[i]->skip_to(count == 1 ? 0 : is_of_frame ? pair.frames[i] : pair.index);
       masks_[i]->fetch(pair.masks[i]);
     }
   }

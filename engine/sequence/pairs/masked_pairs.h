@@ -11,8 +11,9 @@
 namespace vantage {
 
 /// The pairs of another source, without the pixels that show no scene (leave_out_of_pair()). Masks
-/// of files belong to pairs by their index in the input. Black borders are those of pairs from the
-/// beginning of the input together, whichever pairs are fetched; `each_alone`: of each pair.
+/// of files belong to pairs by their index in the input; where some frames are in no pair and there
+/// are as many masks as frames, to those. Black borders are those of pairs from the beginning of
+/// the input together, whichever pairs are fetched; `each_alone`: of each pair.
 class MaskedPairs final : public ForwardedPairs {
  public:
   /// Throws Error when masks cannot be opened, or are neither one nor as many as the pairs.

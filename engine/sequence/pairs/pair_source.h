@@ -47,6 +47,7 @@ struct FramePair {
   /// `right` is then undefined, and its errors may go unnoticed.
   bool wants_right = true;
   int index = 0;                        ///< of the pair in its source, counted from 0
+  std::array<int, 2> frames = {};       ///< of the left and right camera, see PairSource::frame_of()
   std::array<FetchedFrame, 2> fetched;  ///< decode() makes the pair from it
   Photograph left;
   Photograph right;
@@ -93,6 +94,10 @@ struct Pairing {
   /// for other sources.
   std::vector<int> left_out = {};
 
+  /// Whether that many things of one camera are one for each of its frames, not for each of `pairs`.
+  [[nodiscard]] bool counts_frames(std::size_t camera, int things, int pairs) const {
+    return camera < left_out.size() && left_out[camera] > 0 && things == pairs + left_out[camera];
+  }
   [[nodiscard]] bool is_whole() const {
     return std::ranges::all_of(left_out, [](int frames) { return frames == 0; });
   }
@@ -187,6 +192,12 @@ class PairSource {
   [[nodiscard]] virtual FrameRange pairs_of(FrameRange input_frames) const { return input_frames; }
   /// FramePair::index of a pair.
   [[nodiscard]] virtual int index_of(int pair) const { return pair; }
+  /// Frame of the left (0) or right camera in the pair of this FramePair::index. Of other sources
+  /// the index.
+  [[nodiscard]] virtual int frame_of(std::size_t camera, int index) const {
+    (void)camera;
+    return index;
+  }
   /// Number of frames that pairs_of() counts. Of a stream an upper bound.
   [[nodiscard]] virtual int input_frames() const { return pair_count(); }
   /// Number of decoded frames, no larger than photographs, that the source itself keeps in memory.

@@ -18,6 +18,9 @@ class SeveralCameras final : public PairSource {
   bool fetch(FramePair& pair) override;
   void skip_to(int index) override { pairs_->skip_to(index); }
   [[nodiscard]] int pair_count() const override { return pairs_->pair_count(); }
+  [[nodiscard]] int frame_of(std::size_t camera, int index) const override {
+    return pairs_->frame_of(camera, index);
+  }
   [[nodiscard]] std::string describe(int index) const override;
   [[nodiscard]] std::vector<std::string> remarks() const override { return pairs_->remarks(); }
   [[nodiscard]] Pairing pairing() const override { return pairs_->pairing(); }

@@ -30,6 +30,9 @@ class TwoCameraPairs final : public PairSource {
   [[nodiscard]] PairDetails details(int index) const override {
     return details_.empty() ? PairDetails{} : details_.at(static_cast<std::size_t>(index));
   }
+  [[nodiscard]] int frame_of(std::size_t camera, int index) const override {
+    return pairing_.frame(camera, index);
+  }
   [[nodiscard]] std::string describe(int index) const override;
   [[nodiscard]] std::vector<std::string> remarks() const override { return pairing_.remarks; }
   [[nodiscard]] Pairing pairing() const override { return pairing_.found; }
