@@ -49,7 +49,7 @@ TEST(PairList, Quotes) {
 }
 
 TEST(PairList, OtherSeparators) {
-  EXPECT_THAT(parsed("a,1.png;b 1.png\nc.png;d.png"), ElementsAre("a,1.png|b 1.png", "c.png|d.png"))
+  EXPECT_THAT(parsed("a 1.png;b 1.png\nc.png;d.png"), ElementsAre("a 1.png|b 1.png", "c.png|d.png"))
       << "of a German spreadsheet";
   EXPECT_THAT(parsed("left\tright\na b\tc d"), ElementsAre("a b|c d"));
   EXPECT_THAT(parsed("a.png  b.png \n \"c d\" e.png"), ElementsAre("a.png|b.png", "c d|e.png"));
