@@ -16,6 +16,7 @@
 #include "engine/vantage.h"
 #include "python/arrays.h"
 #include "python/calls.h"
+#include "python/remark_warnings.h"
 
 namespace vantage::python {
 namespace py = pybind11;
@@ -82,11 +83,18 @@ std::optional<ImageSize> size_of(const py::object& object) {
   }
 }
 
+LensKind lens_of(const std::string& name) {
+  if (name != "standard" && name != "fisheye") {
+    throw UsageError(fmt::format("lens is '{}', expected 'standard' or 'fisheye'", name));
+  }
+  return name == "fisheye" ? LensKind::kFisheye : LensKind::kStandard;
+}
+
 StereoCalibration make_calibration(const py::object& left, const py::object& left_distortion,
                                    const py::object& right, const py::object& right_distortion,
                                    const py::object& rotation, const py::object& translation,
                                    const py::object& image_size, bool is_rectified,
-                                   std::optional<double> metres_per_unit) {
+                                   std::optional<double> metres_per_unit, const std::string& lens) {
   if (metres_per_unit && !(*metres_per_unit > 0 && std::isfinite(*metres_per_unit))) {
     throw UsageError(
         fmt::format("metres_per_unit is {}, expected a number above 0", *metres_per_unit));
@@ -104,9 +112,9 @@ StereoCalibration make_calibration(const py::object& left, const py::object& lef
   StereoCalibration calibration;
   calibration.file = "the calibration";
   calibration.metres_per_unit = metres_per_unit;
-  calibration.left = {matrix_of(left, "K1"), distortion(left_distortion, "D1")};
+  calibration.left = {matrix_of(left, "K1"), distortion(left_distortion, "D1"), lens_of(lens)};
   calibration.right = {right.is_none() ? calibration.left.matrix : matrix_of(right, "K2"),
-                       distortion(right_distortion, "D2")};
+                       distortion(right_distortion, "D2"), lens_of(lens)};
   if (!rotation.is_none()) {
     calibration.rotation = matrix_of(rotation, "R");
   }
@@ -165,8 +173,13 @@ StereoCalibration make_rig(double focal_px, double baseline_metres, const py::ob
 
 StereoCalibration load_calibration(const py::object& path, bool already_rectified,
                                    const std::optional<std::array<int, 2>>& kitti_cameras,
-                                   const std::vector<py::object>& images) {
-  std::optional<KittiCameras> cameras;
+                                   const std::vector<py::object>& images,
+                                   const std::optional<std::string>& lens) {
+  CalibrationChoice choice;
+  std::optional<KittiCameras>& cameras = choice.kitti_cameras;
+  if (lens) {
+    choice.lens = lens_of(*lens);
+  }
   if (kitti_cameras) {
     if (kitti_cameras != std::array{0, 1} && kitti_cameras != std::array{2, 3}) {
       throw UsageError(fmt::format("kitti_cameras is ({}, {}), expected (0, 1) or (2, 3)",
@@ -177,14 +190,15 @@ StereoCalibration load_calibration(const py::object& path, bool already_rectifie
   RigScale rig;
   rig.images_are_rectified = already_rectified;
   const std::string file = path_of(path);
-  StereoCalibration calibration = without_gil([&] { return rig.read(file, cameras); });
+  StereoCalibration calibration = without_gil([&] { return rig.read(file, choice); });
+  RemarkWarnings().warn(calibration.remarks);
   if (!cameras && calibration.has_other_cameras) {
     std::vector<std::filesystem::path> paths;
     for (const py::object& image : images) {
       paths.emplace_back(path_of(image));
     }
-    if (const std::optional<KittiCameras> named = kitti_cameras_of(paths)) {
-      return without_gil([&] { return rig.read(file, named); });
+    if ((cameras = kitti_cameras_of(paths))) {
+      return without_gil([&] { return rig.read(file, choice); });
     }
     const std::string text = fmt::format(
         "{}: has KITTI's cameras 0 to 3, and 0 and 1 (grey) are used; kitti_cameras=(2, 3) of "
@@ -222,11 +236,12 @@ py::tuple state_of(const StereoCalibration& c) {
       c.image_size ? Size({c.image_size->width_px, c.image_size->height_px}) : Size(),
       c.metres_per_unit, c.has_scale, c.is_rectified,
       c.kitti_cameras ? std::optional(static_cast<int>(*c.kitti_cameras)) : std::nullopt,
-      c.has_other_cameras, c.format, c.file);
+      c.has_other_cameras, c.format, c.file, c.left.lens == LensKind::kFisheye,
+      c.right.lens == LensKind::kFisheye);
 }
 
 StereoCalibration of_state(const py::tuple& state) {
-  if (state.size() != 14) {
+  if (state.size() != 16) {
     throw UsageError("the pickled calibration is not of this version of vantage");
   }
   StereoCalibration c;
@@ -246,6 +261,8 @@ StereoCalibration of_state(const py::tuple& state) {
   c.has_other_cameras = state[11].cast<bool>();
   c.format = state[12].cast<std::string>();
   c.file = state[13].cast<std::string>();
+  c.left.lens = state[14].cast<bool>() ? LensKind::kFisheye : LensKind::kStandard;
+  c.right.lens = state[15].cast<bool>() ? LensKind::kFisheye : LensKind::kStandard;
   validate(c);
   return c;
 }
@@ -255,13 +272,19 @@ constexpr const char* kCalibrationText =
     "K1\nunless "
     "given; T must be.\n\n"
     "image_size: (width, height) of both images. rectified: whether their rows correspond.\n"
-    "metres_per_unit: length of the unit of T; None: not known. Raises "
+    "metres_per_unit: length of the unit of T; None: not known. lens: 'standard', or 'fisheye' "
+    "for\n"
+    "D1 and D2 of cv2.fisheye. Raises "
     "UsageError for impossible cameras.";
 constexpr const char* kLoadText =
-    "Reads a file of OpenCV, Middlebury or KITTI. Raises Error.\n\nalready_rectified: the images "
+    "Reads a file of OpenCV, ROS, Kalibr, EuRoC, ORB-SLAM, Middlebury, KITTI or COLMAP; "
+    "'LEFT,RIGHT' "
+    "for\ntwo files. Raises Error.\n\nalready_rectified: the images "
     "were rectified with it: its P1 and P2, or Q, instead of M1 and M2.\nkitti_cameras: (0, 1), "
     "grey, or (2, 3), colour, of a KITTI file; None: those of the folders\n"
-    "that `images` are in (image_2, image_3 ...), else (0, 1), with a warning if it has both.";
+    "that `images` are in (image_2, image_3 ...), else (0, 1), with a warning if it has "
+    "both.\nlens: "
+    "'standard' or 'fisheye', where four coefficients do not tell.";
 constexpr const char* kFocalLengthText =
     "Rectified cameras, in metres, of their focal length and distance.\n\ndoffs_px: cx of the "
     "right "
@@ -280,7 +303,7 @@ std::optional<StereoCalibration> calibration_from(const py::object& object) {
   if (py::isinstance<StereoCalibration>(object)) {
     return object.cast<StereoCalibration>();
   }
-  return load_calibration(object, false, std::nullopt, {});
+  return load_calibration(object, false, std::nullopt, {}, std::nullopt);
 }
 
 void bind_calibration(py::module_& module) {
@@ -288,10 +311,12 @@ void bind_calibration(py::module_& module) {
       .def(py::init(&make_calibration), py::arg("K1"), py::arg("D1") = py::none(),
            py::arg("K2") = py::none(), py::arg("D2") = py::none(), py::arg("R") = py::none(),
            py::arg("T") = py::none(), py::kw_only(), py::arg("image_size") = py::none(),
-           py::arg("rectified") = false, py::arg("metres_per_unit") = std::optional<double>())
+           py::arg("rectified") = false, py::arg("metres_per_unit") = std::optional<double>(),
+           py::arg("lens") = "standard")
       .def_static("load", &load_calibration, py::arg("path"), py::kw_only(),
                   py::arg("already_rectified") = false, py::arg("kitti_cameras") = py::none(),
-                  py::arg("images") = std::vector<py::object>(), kLoadText)
+                  py::arg("images") = std::vector<py::object>(),
+                  py::arg("lens") = std::optional<std::string>(), kLoadText)
       .def_static("from_focal_length", &make_rig, py::arg("focal_px"), py::arg("baseline_metres"),
                   py::kw_only(), py::arg("image_size") = py::none(), py::arg("doffs_px") = 0.0,
                   py::arg("principal_point_px") = std::optional<std::pair<double, double>>(),
@@ -309,6 +334,12 @@ void bind_calibration(py::module_& module) {
       .def_property_readonly(
           "D2", [](const StereoCalibration& c) { return c.right.distortion; },
           "Distortion of the right lens, likewise.")
+      .def_property_readonly(
+          "lens",
+          [](const StereoCalibration& c) {
+            return c.left.lens == LensKind::kFisheye ? "fisheye" : "standard";
+          },
+          "'standard', or 'fisheye': D1 and D2 are those of cv2.fisheye.")
       .def_property_readonly(
           "R", [](const StereoCalibration& c) { return c.rotation; },
           "float64, 3x3: x_right = R x_left + T.")

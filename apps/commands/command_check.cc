@@ -76,7 +76,7 @@ void add_check_settings(Settings& settings, CheckJob& job) {
                                  "none");
   settings.input_path("calibration", job.calibration, "FILE",
                       "Cameras, to rectify the pair first: OpenCV, Middlebury or KITTI file");
-  add_kitti_cameras_setting(settings, job.kitti_cameras);
+  add_calibration_choice_settings(settings, job.calibration_choice);
   add_scene_mask_settings(settings, job.input.masks, true);
   add_white_level_setting(settings, job.input.white_level);
   add_reading_settings(settings, job.input.reading);
@@ -91,7 +91,7 @@ void add_check_settings(Settings& settings, CheckJob& job) {
 
 void check(CheckJob& job, const Settings& settings) {
   if (job.calibration.empty()) {
-    settings.refuse_idle({"kitti-cameras"}, "without --calibration");
+    settings.refuse_idle({"kitti-cameras", "lens"}, "without --calibration");
   }
   if (!job.right.empty()) {
     settings.refuse_idle({"packing"}, "with two images or sequences");
@@ -164,8 +164,8 @@ std::string examine(CheckJob& job, const Settings& settings, Execution& executio
   std::optional<StereoCalibration> calibration;
   if (!job.calibration.empty()) {
     choose_kitti_cameras(settings, job.common, job.calibration, session.pairs->files(),
-                         job.kitti_cameras);
-    calibration = job.rig.read(job.calibration, job.kitti_cameras);
+                         job.calibration_choice);
+    calibration = job.rig.read(job.calibration, job.calibration_choice);
   }
   const int pair_count = session.pairs->pair_count();
   std::string text;
@@ -184,6 +184,10 @@ std::string examine(CheckJob& job, const Settings& settings, Execution& executio
     if (is_first) {
       const std::vector<Remark>& level = session.pairs->white_level().remarks;
       found.remarks.insert(found.remarks.begin(), level.begin(), level.end());
+      if (const auto& cameras = session.shape.cameras) {
+        found.remarks.insert(found.remarks.begin(), cameras->remarks.begin(),
+                             cameras->remarks.end());
+      }
     }
     for (const Remark& remark : found.remarks) {
       report.add_remark(remark);

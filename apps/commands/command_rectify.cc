@@ -22,7 +22,7 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   settings.input_path(
       "calibration", job.calibration, "FILE",
       "Cameras: OpenCV, Middlebury or KITTI file; default: estimated from the images");
-  add_kitti_cameras_setting(settings, job.kitti_cameras);
+  add_calibration_choice_settings(settings, job.calibration_choice);
   settings.number("baseline", job.baseline_m, "METRES",
                   "Distance of the cameras: gives estimated cameras their scale; auto: that of "
                   "--calibration");

@@ -155,7 +155,7 @@ int command_reproject(const Arguments& arguments) {
   check(job, settings);
   const std::filesystem::path image[] = {job.image};
   choose_kitti_cameras(settings, job.common, job.cameras.calibration, image,
-                       job.cameras.kitti_cameras);
+                       job.cameras.calibration_choice);
   CommandWork work(settings, job.common);
   RunReport& report = work.report;
   Execution& execution = work.execution;
@@ -164,11 +164,13 @@ int command_reproject(const Arguments& arguments) {
       report.timed_file_access("read", [&] { return read_files(job, execution, report); });
   const int width = read.disparity_px.width();
   const int height = read.disparity_px.height();
+  std::vector<Remark> remarks;
   const CloudSource source{.disparity_px = read.disparity_px.view(),
                            .colours = job.image.empty() ? nullptr : &read.image,
                            .unmatched = read.unmatched.view(),
                            .confidence = read.confidence.view(),
-                           .camera = job.cameras.camera(width, height, job.reference)};
+                           .camera = job.cameras.camera(width, height, job.reference, &remarks)};
+  tell_remarks(remarks, job.common, report);
   const DepthFiles files = report.timed_compute(
       "depth", [&] { return make_depth_files(job.outputs, source, execution, report); });
   report.timed_file_access("write", [&] { write_depth_files(job.outputs, files); });

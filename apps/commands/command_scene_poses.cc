@@ -8,6 +8,7 @@
 #include "apps/inputs/input_limits.h"
 #include "apps/scene/poses_job.h"
 #include "apps/settings/command_line.h"
+#include "engine/options/calibration_settings.h"
 #include "engine/options/pair_source_settings.h"
 #include "engine/options/settings.h"
 
@@ -50,6 +51,7 @@ void add_scene_poses_settings(Settings& settings, ScenePosesJob& job) {
       "images in image_2, else P0), or a text fx fy cx cy [k1 k2 p1 p2 [k3]]; none: focal length "
       "and radial "
       "distortion are estimated");
+  add_lens_setting(settings, job.lens);
   add_reading_settings(settings, job.reading);
   Setting& output =
       settings.path("output", job.output, "MODEL", "Folder of the poses, a COLMAP model as text");

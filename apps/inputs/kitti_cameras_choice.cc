@@ -3,7 +3,6 @@
 #include <string_view>
 
 #include "apps/process/tell.h"
-#include "engine/rectification/stereo_calibration.h"
 
 namespace vantage::apps {
 namespace {
@@ -24,12 +23,13 @@ void tell_of_grey_cameras(const Settings& settings, const std::string& calibrati
 void choose_kitti_cameras(const Settings& settings, const CommonOptions& common,
                           const std::string& calibration,
                           std::span<const std::filesystem::path> images,
-                          std::optional<KittiCameras>& cameras) {
+                          CalibrationChoice& choice) {
+  std::optional<KittiCameras>& cameras = choice.kitti_cameras;
   if (calibration.empty() || cameras) {
     return;
   }
   // Also reads OpenCV files with only P1 and P2, or only Q: cameras of rectified images.
-  const StereoCalibration read = read_stereo_calibration(calibration);
+  const StereoCalibration read = read_stereo_calibration(calibration, choice);
   if (!read.kitti_cameras) {
     return;
   }
@@ -52,12 +52,12 @@ void choose_kitti_cameras(const Settings& settings, const CommonOptions& common,
 }
 
 void warn_of_grey_cameras(const Settings& settings, const CommonOptions& common,
-                          const ListColumns& columns, std::optional<KittiCameras> chosen) {
-  if (chosen || common.quiet) {
+                          const ListColumns& columns, const CalibrationChoice& choice) {
+  if (choice.kitti_cameras || common.quiet) {
     return;
   }
   for (const auto& [file, named] : columns.calibrations) {
-    if (!named && read_stereo_calibration(file).has_other_cameras) {
+    if (!named && read_stereo_calibration(file, choice).has_other_cameras) {
       tell_of_grey_cameras(settings, file.string());
       return;
     }

@@ -38,9 +38,11 @@ void refuse_idle_match_options(const Settings& settings) {
 }
 
 RectifiedPair rectify(const StereoCalibration& calibration, const RectificationOptions& options,
-                      Execution& execution, RunReport& report, PairWithMaps& pair) {
+                      const CommonOptions& common, Execution& execution, RunReport& report,
+                      PairWithMaps& pair) {
   Rectifier rectifier(calibration, pair.left.width(), pair.left.height(), options);
   RectifiedPair cameras = rectifier.pair();
+  tell_remarks(cameras.remarks, common, report);
   if (rectifier.needs_rectification()) {
     const UnrectifiedImages& read = pair.unrectified.emplace(
         UnrectifiedImages{std::move(rectifier), std::move(pair.left), std::move(pair.right)});
@@ -67,7 +69,7 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
                       "Cameras, to rectify the pair first if needed: OpenCV, Middlebury or KITTI "
                       "file; given maps belong to rectified images");
   add_kept_outline_setting(settings, pair.rectification);
-  add_kitti_cameras_setting(settings, pair.kitti_cameras);
+  add_calibration_choice_settings(settings, pair.calibration_choice);
   add_rig_scale_settings(settings, pair.rig, RigUse::kDepths);
   add_scene_mask_settings(settings, pair.masks);
   add_white_level_setting(settings, pair.white_level);
@@ -100,7 +102,7 @@ void check_pair(const PairInput& pair, const Settings& settings) {
   pair.rectification.validate();
   pair.masks.validate();
   if (pair.calibration.empty()) {
-    settings.refuse_idle({"kept-outline", "kitti-cameras"}, "without --calibration");
+    settings.refuse_idle({"kept-outline", "kitti-cameras", "lens"}, "without --calibration");
   }
 }
 
@@ -125,9 +127,9 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
   std::optional<StereoCalibration> calibration;
   if (!pair.calibration.empty()) {
     const std::filesystem::path images[] = {pair.left, pair.right};
-    choose_kitti_cameras(settings, common, pair.calibration, images, pair.kitti_cameras);
-    calibration = pair.rig.read(pair.calibration, pair.kitti_cameras);
-    result.cameras = rectify(*calibration, pair.rectification, execution, report, result);
+    choose_kitti_cameras(settings, common, pair.calibration, images, pair.calibration_choice);
+    calibration = pair.rig.read(pair.calibration, pair.calibration_choice);
+    result.cameras = rectify(*calibration, pair.rectification, common, execution, report, result);
   }
   if (pair.has_maps()) {
     std::vector<Remark> remarks;

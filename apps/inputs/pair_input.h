@@ -15,7 +15,6 @@
 #include "engine/options/match_settings.h"
 #include "engine/options/rig_scale.h"
 #include "engine/options/settings.h"
-#include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/synthesis/pair_with_maps.h"
 
@@ -31,7 +30,7 @@ struct PairInput {
   GivenMapOptions given;
   std::string calibration;  ///< file, empty = a rectified pair of which nothing is known
   RigScale rig;             ///< of given depths
-  std::optional<KittiCameras> kitti_cameras;
+  CalibrationChoice calibration_choice;
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();
   std::optional<double> white_level;  ///< empty: see WhiteLevelSearch

@@ -98,14 +98,16 @@ struct MatchInputs {
         camera_geometry(job.depth, size.columns, size.rows, job.vertical),
         camera(camera_geometry.camera(side_of(job))),
         first_is_left(!job.has_several() || job.is_left()) {
+    tell_remarks(camera_geometry.remarks(), job.common, report);
     rectify(job, camera_geometry, images, execution, report);
     if (job.vertical) {
       transpose(images);
     }
     require_volume_rows(job.volume, job.vertical ? images[0].width() : images[0].height());
     if (!job.unrectified.empty()) {
-      rectifier.emplace(read_stereo_calibration(job.unrectified, job.depth.kitti_cameras),
+      rectifier.emplace(read_stereo_calibration(job.unrectified, job.depth.calibration_choice),
                         size.columns, size.rows);
+      tell_remarks(rectifier->pair().remarks, job.common, report);
       for (const Side side : {Side::kLeft, Side::kRight}) {
         rectifier->apply(images[index_of(side)], side, rectified[index_of(side)], execution);
       }
@@ -305,7 +307,7 @@ int run_match(MatchJob& job, const Settings& settings) {
   const std::vector<std::string> files = job.inputs();
   choose_kitti_cameras(
       settings, job.common, job.unrectified.empty() ? job.depth.calibration : job.unrectified,
-      std::vector<std::filesystem::path>(files.begin(), files.end()), job.depth.kitti_cameras);
+      std::vector<std::filesystem::path>(files.begin(), files.end()), job.depth.calibration_choice);
   CommandWork work(settings, job.common, reported_settings(settings, job.match));
   RunReport& report = work.report;
 

@@ -38,7 +38,7 @@ constexpr int kMaxSamplePairs = 1000;
 
 void check(const RectifyJob& job, const Settings& settings) {
   if (job.calibration.empty()) {
-    settings.refuse_idle({"kitti-cameras"}, "without --calibration");
+    settings.refuse_idle({"kitti-cameras", "lens"}, "without --calibration");
   }
   job.rectification.validate();
   job.common.execution.validate();
@@ -177,11 +177,14 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
     });
     rectification.calibration = rectification.estimate->calibration;
   } else {
-    choose_kitti_cameras(settings, job.common, job.calibration, pairs->files(), job.kitti_cameras);
+    choose_kitti_cameras(settings, job.common, job.calibration, pairs->files(),
+                         job.calibration_choice);
     report.set_settings(settings.values());
-    rectification.calibration = read_stereo_calibration(job.calibration, job.kitti_cameras);
+    rectification.calibration = read_stereo_calibration(job.calibration, job.calibration_choice);
   }
   set_baseline(job, rectification.calibration);
+  rectification.calibration = rectification.calibration.for_images(size.width_px, size.height_px);
+  tell_remarks(rectification.calibration.remarks, job.common, report);
   const auto rectifier_of_all = [&] {
     return report.timed_compute("maps", [&] {
       return Rectifier(rectification.calibration, size.width_px, size.height_px, job.rectification);

@@ -5,7 +5,6 @@
 
 #include "apps/settings/common_options.h"
 #include "engine/options/settings.h"
-#include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/sequence/pairs/pair_source.h"
 
@@ -16,7 +15,7 @@ struct RectifyJob {
   PairSourceOptions input;
   std::string calibration;  ///< file; empty: from the images alone
   int sample_pairs = 10;
-  std::optional<KittiCameras> kitti_cameras;
+  CalibrationChoice calibration_choice;
   RectificationOptions rectification;
   std::optional<double> baseline_m;  ///< empty: that of the calibration
   std::string output;                ///< folder

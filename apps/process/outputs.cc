@@ -13,6 +13,7 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/numbered_part.h"
 #include "engine/io/maps/map_formats.h"
+#include "engine/rectification/stereo_calibration.h"
 
 namespace vantage::apps {
 namespace {
@@ -84,7 +85,10 @@ bool has_extension(const fs::path& path, const std::vector<std::string>& extensi
 
 FileChecks::FileChecks(const Settings& settings) {
   for (const std::string& path : settings.input_paths()) {
-    add_input(path);
+    for (const fs::path& file :
+         fs::exists(path) ? std::vector<fs::path>{path} : calibration_files(path)) {
+      add_input(file);
+    }
   }
 }
 

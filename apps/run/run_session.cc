@@ -65,7 +65,9 @@ RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSe
   identity.inputs = session.pairs->identities();
   if (!job.cameras_file().empty()) {
     FileIdentity calibration;
-    calibration.add(fs::path(job.cameras_file()).filename().string(), job.cameras_file());
+    for (const fs::path& file : calibration_files(job.cameras_file())) {
+      calibration.add(file.filename().string(), file);
+    }
     identity.inputs.push_back((job.unrectified.empty() ? "calibration: " : "unrectified: ") +
                               calibration.to_string());
   }
@@ -235,15 +237,18 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
     }
   });
   Execution execution(job.common.execution);
-  warn_of_grey_cameras(settings, job.common, session.columns, job.kitti_cameras);
+  warn_of_grey_cameras(settings, job.common, session.columns, job.calibration_choice);
   std::optional<StereoCalibration> calibration;
   if (!job.cameras_file().empty()) {
     choose_kitti_cameras(settings, job.common, job.cameras_file(), session.pairs->files(),
-                         job.kitti_cameras);
+                         job.calibration_choice);
     report.set_settings(reported_settings(settings, job.sequence.match));
-    calibration = job.rig.read(job.cameras_file(), job.kitti_cameras);
+    calibration = job.rig.read(job.cameras_file(), job.calibration_choice);
   }
   prepare_pairs(job, calibration, job.sequence.is_metric(), first, execution, session);
+  if (session.shape.cameras) {
+    tell_remarks(session.shape.cameras->remarks, job.common, report);
+  }
   choose_rows(job, settings, first, execution, session, report);
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   const auto find_range = [&] {

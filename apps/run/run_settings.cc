@@ -122,7 +122,7 @@ void add_run_settings(Settings& settings, RunJob& job) {
   settings.take_job_file();
   add_input_settings(settings, job);
   add_unrectified_settings(settings, job.unrectified, job.rectified_pixels);
-  add_kitti_cameras_setting(settings, job.kitti_cameras);
+  add_calibration_choice_settings(settings, job.calibration_choice);
   add_rectification_check_setting(
       settings, job.check_rectification,
       "Do not check, and warn, whether rows correspond and whether left and right are exchanged");

@@ -143,7 +143,7 @@ std::vector<SceneImage> images_of_trajectory(const Trajectory& trajectory, const
 }  // namespace
 
 std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::string& images,
-                                           const fs::path& intrinsics,
+                                           const fs::path& intrinsics, std::optional<LensKind> lens,
                                            std::vector<std::string>& remarks) {
   if (images.empty()) {
     throw UsageError("--poses is given without --images, expected both");
@@ -161,7 +161,11 @@ std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::str
                     poses.string()));
   }
   const fs::path& camera_file = intrinsics.empty() ? poses : intrinsics;
-  const SizedCamera camera = read_intrinsics(camera_file, kitti_camera_of(files).value_or(0));
+  const SizedCamera camera = read_intrinsics(
+      camera_file, {.kitti_camera = kitti_camera_of(files).value_or(0), .lens = lens});
+  for (const Remark& remark : camera.remarks) {
+    remarks.push_back(remark.text);
+  }
   if (is_opencv) {
     return in_order(files, camera, parse_opencv_poses(text, poses.string()), poses);
   }

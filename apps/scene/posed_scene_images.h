@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,13 +13,15 @@ namespace vantage::apps {
 ///  - `poses` is a folder with a COLMAP model: its images are in the folder `images`.
 ///  - A file with OpenCV's camera and extrinsic_parameters: poses belong to the images of the
 ///  sequence `images` in order; `intrinsics` may be empty.
-///  - A TUM or KITTI trajectory: `intrinsics` is the file of the camera. TUM poses belong to the
-///  images whose names are times, the nearest one within 0.02 s; images without one are left out,
-///  which `remarks` says; if the names are no times, and for KITTI, to the images in order.
+///  - A TUM or KITTI trajectory: `intrinsics` is the file of the camera, `lens` what its four
+///  coefficients are. TUM poses belong to the images whose names are times, the nearest one within
+///  0.02 s; images without one are left out, which `remarks` says; if the names are no times, and
+///  for KITTI, to the images in order.
 /// Throws Error of one line naming the file, UsageError for a missing option.
 std::vector<SceneImage> posed_scene_images(const std::filesystem::path& poses,
                                            const std::string& images,
                                            const std::filesystem::path& intrinsics,
+                                           std::optional<LensKind> lens,
                                            std::vector<std::string>& remarks);
 
 }  // namespace vantage::apps

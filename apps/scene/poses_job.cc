@@ -265,24 +265,32 @@ int estimate_poses(ScenePosesJob& job, const Settings& settings) {
   if (job.distance) {
     require_image(std::max(job.distance->first, job.distance->second), files.size());
   }
-  ImageSize size_of_lens;
+  SizedCamera camera;
   if (!job.intrinsics.empty()) {
-    const SizedCamera camera = read_intrinsics(job.intrinsics, kitti_camera_of(files).value_or(0));
+    camera = read_intrinsics(
+        job.intrinsics, {.kitti_camera = kitti_camera_of(files).value_or(0), .lens = job.lens});
     job.estimation.lens = camera.camera;
-    size_of_lens = camera.size;
+  } else {
+    settings.refuse_idle({"lens"}, "without --intrinsics");
   }
   CommandWork work(settings, job.common);
   RunReport& report = work.report;
+  tell_remarks(camera.remarks, job.common, report);
 
   const Photograph first =
       report.timed_file_access("read", [&] { return read_photograph(files[0], job.reading); });
   tell_remarks(first.origin.remarks, job.common, report);
   const ImageSize size{first.width(), first.height()};
-  if (size_of_lens.width_px != 0 &&
-      (size_of_lens.width_px != size.width_px || size_of_lens.height_px != size.height_px)) {
-    throw Error(fmt::format("{} is {}x{}, expected {}x{} as its camera", files[0].string(),
-                            size.width_px, size.height_px, size_of_lens.width_px,
-                            size_of_lens.height_px));
+  if (camera.size.width_px != 0 &&
+      (camera.size.width_px != size.width_px || camera.size.height_px != size.height_px)) {
+    job.estimation.lens = camera.scaled_to(size);
+    if (!job.estimation.lens) {
+      throw Error(fmt::format("{} is {}x{}, expected {}x{} as its camera", files[0].string(),
+                              size.width_px, size.height_px, camera.size.width_px,
+                              camera.size.height_px));
+    }
+    tell("scene poses: {} is for images of {}x{} and is scaled to {}x{}\n", job.intrinsics,
+         camera.size.width_px, camera.size.height_px, size.width_px, size.height_px);
   }
   CameraEstimate estimate =
       report.timed_compute("poses", [&] { return estimate_of(job, files, work.execution); });

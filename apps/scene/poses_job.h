@@ -21,6 +21,7 @@ struct KnownDistance {
 struct ScenePosesJob {
   std::string images;
   std::string intrinsics;
+  std::optional<LensKind> lens;  ///< of the file of intrinsics
   std::string output;
   std::optional<KnownDistance> distance;
   CameraEstimationOptions estimation;

@@ -7,6 +7,7 @@
 #include "apps/scene/posed_scene_images.h"
 #include "engine/error.h"
 #include "engine/io/video/frame_source.h"
+#include "engine/options/calibration_settings.h"
 #include "engine/scene_graph/position_list.h"
 
 namespace vantage::apps {
@@ -95,15 +96,16 @@ void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
       "intrinsics", input.intrinsics, "FILE",
       "Camera of a trajectory: OpenCV's YAML or XML, COLMAP's cameras.txt, KITTI's "
       "calib.txt (P2 for images in image_2, else P0), or a text fx fy cx cy [k1 k2 p1 p2 [k3]]");
+  add_lens_setting(settings, input.lens);
 }
 
 std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settings& settings,
                                      std::vector<std::string>& remarks) {
   if (!input.poses.empty()) {
     settings.refuse_idle({"grid", "spacing", "positions"}, "with --poses");
-    return posed_scene_images(input.poses, input.images, input.intrinsics, remarks);
+    return posed_scene_images(input.poses, input.images, input.intrinsics, input.lens, remarks);
   }
-  settings.refuse_idle({"intrinsics", "neighbours"}, "without --poses");
+  settings.refuse_idle({"intrinsics", "lens", "neighbours"}, "without --poses");
   if (input.images.empty() == input.positions.empty()) {
     throw UsageError(input.images.empty()
                          ? "no images are given, expected --images or --positions"

@@ -25,9 +25,11 @@ struct SceneImagesInput {
   std::string positions;   ///< file; empty: `images` on a grid
   std::string poses;       ///< file or COLMAP model; empty: no poses
   std::string intrinsics;  ///< file; of the camera of a trajectory
+  std::optional<LensKind> lens;
 };
 
-/// --images, --grid, --spacing, --positions, --poses and --intrinsics, in the group that has begun.
+/// --images, --grid, --spacing, --positions, --poses, --intrinsics and --lens, in the group that
+/// has begun.
 void add_scene_images_settings(Settings& settings, SceneImagesInput& input);
 
 /// Throws UsageError when options do not go together, Error when there are no such files, or not

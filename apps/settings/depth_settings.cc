@@ -35,7 +35,7 @@ DepthGeometry::DepthGeometry(const DepthSettings& depth, int width_px, int heigh
   if (depth.calibration.empty()) {
     return;
   }
-  const StereoCalibration cameras = depth.rig.read(depth.calibration, depth.kitti_cameras);
+  const StereoCalibration cameras = depth.rig.read(depth.calibration, depth.calibration_choice);
   metres_per_unit_ = depth.outputs.any() ? depth.rig.required_unit_of(cameras)
                                          : depth.rig.unit_of(cameras).value_or(1);
   rectifier_.emplace(cameras, width_px, height_px, depth.rectification);
@@ -56,7 +56,7 @@ void add_depth_settings(Settings& settings, DepthSettings& depth) {
                       "Cameras, to rectify the pair first if needed, and for depths: OpenCV, "
                       "Middlebury or KITTI file");
   add_kept_outline_setting(settings, depth.rectification);
-  add_kitti_cameras_setting(settings, depth.kitti_cameras);
+  add_calibration_choice_settings(settings, depth.calibration_choice);
   add_rig_scale_settings(settings, depth.rig);
   add_depth_output_settings(settings, depth.outputs);
   add_cloud_settings(settings, depth.outputs.options);

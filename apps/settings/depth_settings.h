@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "apps/match/depth_outputs.h"
@@ -17,7 +18,7 @@ struct DepthSettings {
   std::string resolution_file;  ///< map of δZ; empty: none
   DepthOutputs outputs;
   std::string calibration;  ///< of the images, which are rectified first if needed
-  std::optional<KittiCameras> kitti_cameras;
+  CalibrationChoice calibration_choice;
   RigScale rig;
   RectificationOptions rectification;
   std::optional<double> step_px = std::nullopt;  ///< δ; default 0.1, or 1 for whole disparities
@@ -39,6 +40,11 @@ class DepthGeometry {
   /// Null unless the images must be rectified.
   [[nodiscard]] const Rectifier* rectifier() const {
     return rectifier_ && rectifier_->needs_rectification() ? &*rectifier_ : nullptr;
+  }
+  /// Of the calibration; none without one.
+  [[nodiscard]] std::span<const Remark> remarks() const {
+    return rectifier_ ? std::span<const Remark>(rectifier_->pair().remarks)
+                      : std::span<const Remark>();
   }
   /// Of the map of one image; its unit is the metre, or that of the calibration where its length is
   /// not known, or the baseline. Empty: not even the focal length is known.

@@ -161,7 +161,7 @@ constexpr Rule kMatchJobRules[] = {
     {kMatchJob, "disparity-resolution", "unless depth-resolution | report",
      "no effect without --depth-resolution and --report"},
     {kMatchJob, "kept-outline", "unless calibration", "no effect without --calibration"},
-    {kMatchJob, "kitti-cameras", "unless calibration | unrectified",
+    {kMatchJob, "kitti-cameras | lens", "unless calibration | unrectified",
      "no effect without --calibration"},
     {kMatchJob, "volume-kind | volume-level | volume-rows", "unless volume",
      "no effect without --volume"},

@@ -32,8 +32,11 @@ void check_range(const MatchOptions& options, DisparityRange range, const std::s
 void check_options(const SequenceJob& job, const ListColumns& columns) {
   OptionValues values = values_of(job.sequence);
   values.set("kept-outline", job.rectification.kept_outline);
-  if (job.kitti_cameras) {
+  if (job.calibration_choice.kitti_cameras) {
     values.set("kitti-cameras", "given");
+  }
+  if (job.calibration_choice.lens) {
+    values.set("lens", "given");
   }
   if (!job.calibration.empty()) {
     values.set("calibration", job.calibration);
@@ -48,14 +51,15 @@ void check_options(const SequenceJob& job, const ListColumns& columns) {
 }
 
 /// The cameras of a KITTI file are `chosen`, else those that the folders of the images name.
-StereoCalibration read_listed(const RigScale& rig, std::optional<KittiCameras> chosen,
+StereoCalibration read_listed(const RigScale& rig, const CalibrationChoice& chosen,
                               const PairDetails& pair) {
   const std::string file = pair.calibration.string();
-  StereoCalibration calibration = rig.read(file, std::nullopt);
-  const std::optional<KittiCameras> cameras =
-      chosen || !calibration.has_other_cameras ? chosen : pair.kitti_cameras;
+  StereoCalibration calibration = rig.read(file, {.kitti_cameras = {}, .lens = chosen.lens});
+  const std::optional<KittiCameras> cameras = chosen.kitti_cameras || !calibration.has_other_cameras
+                                                  ? chosen.kitti_cameras
+                                                  : pair.kitti_cameras;
   return calibration.kitti_cameras && cameras && calibration.kitti_cameras != cameras
-             ? rig.read(file, cameras)
+             ? rig.read(file, {.kitti_cameras = cameras, .lens = chosen.lens})
              : calibration;
 }
 
@@ -123,7 +127,7 @@ PairCameras::Options pair_camera_options(const SequenceJob& job) {
       .rectification = job.rectification,
       .reference = job.sequence.match.reference,
       // What is chosen for the calibration of the run later is not for these.
-      .read = [&job, chosen = job.kitti_cameras](
+      .read = [&job, chosen = job.calibration_choice](
                   const PairDetails& pair) { return read_listed(job.rig, chosen, pair); },
       .metres_per_unit =
           [&job](const StereoCalibration& calibration) { return job.rig.unit_of(calibration); }};
@@ -144,7 +148,9 @@ std::vector<std::string> column_identities(const PairSource& pairs) {
         fmt::format("{}\n{}\n{}\n", details.name, details.calibration.filename().string(), range));
     if (!details.calibration.empty() && calibrations.insert(details.calibration).second) {
       FileIdentity identity;
-      identity.add(details.calibration.filename().string(), details.calibration);
+      for (const fs::path& file : calibration_files(details.calibration)) {
+        identity.add(file.filename().string(), file);
+      }
       lines.push_back(fmt::format("calibration {}: {}", details.calibration.filename().string(),
                                   identity.to_string()));
     }

@@ -8,7 +8,6 @@
 #include "engine/options/match_settings.h"
 #include "engine/options/rig_scale.h"
 #include "engine/options/settings.h"
-#include "engine/rectification/kitti_cameras.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/rectification/rows/row_correction.h"
 #include "engine/sequence/options/sequence_options.h"
@@ -28,7 +27,7 @@ struct SequenceJob {
   std::string calibration;  ///< file, empty = rectified pairs
   std::string unrectified;  ///< file of cameras of photographs that are not rectified
   bool rectified_pixels = false;
-  std::optional<KittiCameras> kitti_cameras;  ///< of calibrations of KITTI
+  CalibrationChoice calibration_choice;  ///< of calibrations of the run and of a list
   RectificationOptions rectification;
   RowMode rows = RowMode::kAuto;  ///< kAuto: sequence.rows is found, unless it is known
   RigScale rig;                   ///< of depths

@@ -73,16 +73,25 @@ void RigScale::require_given(const std::string& calibration, const std::string& 
 }
 
 StereoCalibration RigScale::read(const std::string& calibration,
-                                 std::optional<KittiCameras> cameras) const {
-  if (!images_are_rectified) {
-    return read_stereo_calibration(calibration, cameras);
-  }
-  StereoCalibration result = read_rectified_calibration(calibration, cameras);
-  if (!result.is_rectified) {
+                                 const CalibrationChoice& choice) const {
+  StereoCalibration result = images_are_rectified ? read_rectified_calibration(calibration, choice)
+                                                  : read_stereo_calibration(calibration, choice);
+  if (images_are_rectified && !result.is_rectified) {
     throw Error(
         fmt::format("{}: has no cameras of rectified images, expected P1 and P2, or Q, with "
                     "--already-rectified",
                     calibration));
+  }
+  constexpr double kShortest = 5e-4;  // metres
+  constexpr double kLongest = 20;
+  const std::optional<double> unit = unit_of(result);
+  if (unit && !(*unit * result.baseline() >= kShortest && *unit * result.baseline() <= kLongest)) {
+    result.remarks.push_back(
+        {.kind = Remark::Kind::kWarning,
+         .subject = "calibration",
+         .text = fmt::format("{}: the baseline is {:.4g} m: is its unit another one? "
+                             "`calibration-unit` m, cm or mm says which",
+                             calibration, *unit * result.baseline())});
   }
   return result;
 }

@@ -32,9 +32,10 @@ struct RigScale {
   /// Throws UsageError if metres cannot be had, whatever the calibration says: `option` needs them.
   void require_given(const std::string& calibration, const std::string& option) const;
 
-  /// Reads the calibration of the images; `cameras` of a KITTI file. Throws Error.
+  /// Reads the calibration of the images. A baseline that no rig has is among its remarks. Throws
+  /// Error.
   [[nodiscard]] StereoCalibration read(const std::string& calibration,
-                                       std::optional<KittiCameras> cameras) const;
+                                       const CalibrationChoice& choice) const;
   /// Metres per unit of a calibration, of its file or from these settings. Empty: not known.
   [[nodiscard]] std::optional<double> unit_of(const StereoCalibration& calibration) const;
   /// The same; throws Error naming the file if not known.

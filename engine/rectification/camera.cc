@@ -48,10 +48,18 @@ RadialFactor radial_factor(const std::array<double, 14>& k, double r2) {
           1 + r2 * (k[kK4] + r2 * (k[kK5] + r2 * k[kK6]))};
 }
 
-double growing_up_to(const std::array<double, 14>& k) {
+/// Distance from the centre, for a focal length of 1, of a ray at `angle` from the axis.
+double fisheye_radius(const std::array<double, 14>& k, double angle) {
+  const double square = angle * angle;
+  return angle * (1 + square * (k[0] + square * (k[1] + square * (k[2] + square * k[3]))));
+}
+
+double growing_up_to(const std::array<double, 14>& k, LensKind kind) {
   double distorted_radius = 0;
   for (double r = kRayStep; r <= kLargestRay; r += kRayStep) {
-    const RadialFactor factor = radial_factor(k, r * r);
+    const RadialFactor factor = kind == LensKind::kFisheye
+                                    ? RadialFactor{fisheye_radius(k, std::atan(r)) / r, 1}
+                                    : radial_factor(k, r * r);
     const double next = r * factor.numerator / factor.denominator;
     if (!(factor.denominator > 0) || !(next > distorted_radius)) {
       return r - kRayStep;
@@ -64,7 +72,8 @@ double growing_up_to(const std::array<double, 14>& k) {
 }  // namespace
 
 bool Camera::is_without_distortion() const {
-  return std::all_of(distortion.begin(), distortion.end(), [](double k) { return k == 0; });
+  return lens == LensKind::kStandard &&
+         std::all_of(distortion.begin(), distortion.end(), [](double k) { return k == 0; });
 }
 
 void Camera::validate(const std::string& name) const {
@@ -81,6 +90,10 @@ void Camera::validate(const std::string& name) const {
     throw Error(fmt::format("the {}'s matrix is not of the form fx s cx, 0 fy cy, 0 0 1", name));
   }
   const std::size_t count = distortion.size();
+  if (lens == LensKind::kFisheye && count != 4) {
+    throw Error(fmt::format(
+        "the {} has {} distortion coefficients, expected the 4 of a fisheye lens", name, count));
+  }
   if (count != 0 && count != 4 && count != 5 && count != 8 && count != 12 && count != 14) {
     throw Error(fmt::format("the {} has {} distortion coefficients, expected 0, 4, 5, 8, 12 or 14",
                             name, count));
@@ -97,21 +110,37 @@ LensModel::LensModel(const Camera& camera)
     : matrix_(camera.matrix),
       inverse_matrix_(camera.matrix.inverse()),
       coefficients_(all_coefficients(camera)),
+      kind_(camera.lens),
       tilt_(tilt_projection(coefficients_[kTauX], coefficients_[kTauY])),
       is_tilted_(coefficients_[kTauX] != 0 || coefficients_[kTauY] != 0),
-      largest_ray_(growing_up_to(coefficients_)) {}
+      largest_ray_(growing_up_to(coefficients_, kind_)) {}
 
 Eigen::Vector2d LensModel::distorted(const Eigen::Vector2d& ray) const {
   const auto& k = coefficients_;
   const double x = ray.x();
   const double y = ray.y();
   const double r2 = x * x + y * y;
+  if (kind_ == LensKind::kFisheye) {
+    const double r = std::sqrt(r2);
+    return r > 0 ? Eigen::Vector2d(ray * (fisheye_radius(k, std::atan(r)) / r)) : ray;
+  }
   const RadialFactor factor = radial_factor(k, r2);
   const double radial = factor.numerator / factor.denominator;
   const Eigen::Vector2d flat(
       x * radial + 2 * k[kP1] * x * y + k[kP2] * (r2 + 2 * x * x) + r2 * (k[kS1] + r2 * k[kS2]),
       y * radial + k[kP1] * (r2 + 2 * y * y) + 2 * k[kP2] * x * y + r2 * (k[kS3] + r2 * k[kS4]));
   return is_tilted_ ? (tilt_ * flat.homogeneous()).hnormalized() : flat;
+}
+
+Eigen::Vector2d LensModel::fisheye_ray(const Eigen::Vector2d& distorted) const {
+  const double radius = distorted.norm();
+  double below = 0;
+  double above = std::atan(largest_ray_);
+  for (int halving = 0; halving < 60; ++halving) {  // the radius grows with the angle up to there
+    const double middle = (below + above) / 2;
+    (fisheye_radius(coefficients_, middle) < radius ? below : above) = middle;
+  }
+  return radius > 0 ? Eigen::Vector2d(distorted * (std::tan(above) / radius)) : distorted;
 }
 
 std::optional<Eigen::Vector2d> LensModel::position_of(const Eigen::Vector2d& ray) const {
@@ -126,6 +155,10 @@ std::optional<Eigen::Vector2d> LensModel::ray_of(const Eigen::Vector2d& position
   constexpr double kDifference = 1e-6;
   constexpr double kPrecision = 1e-10;
   const Eigen::Vector2d wanted = (inverse_matrix_ * position_px.homogeneous()).head<2>();
+  if (kind_ == LensKind::kFisheye) {
+    const Eigen::Vector2d found = fisheye_ray(wanted);
+    return (distorted(found) - wanted).norm() <= kPrecision ? std::optional(found) : std::nullopt;
+  }
   Eigen::Vector2d ray = wanted;
   if (ray.norm() > largest_ray_) {
     ray *= 0.9 * largest_ray_ / ray.norm();

@@ -21,10 +21,19 @@ cv::Mat to_opencv(const Matrix& matrix) {
   return result;
 }
 
+/// A row; a column of a fisheye lens, as cv2.fisheye writes it.
 cv::Mat distortion_of(const Camera& camera) {
   return camera.distortion.empty() ? cv::Mat::zeros(1, 5, CV_64F)
-                                   : cv::Mat(camera.distortion, true).reshape(1, 1);
+                                   : cv::Mat(camera.distortion, true)
+                                         .reshape(1, camera.lens == LensKind::kFisheye ? 4 : 1);
 }
+
+/// Whether readers must be told what the coefficients are.
+bool needs_lens_kind(const Camera& camera) {
+  return camera.lens == LensKind::kFisheye || camera.distortion.size() == 4;
+}
+
+int is_fisheye(const Camera& camera) { return camera.lens == LensKind::kFisheye ? 1 : 0; }
 
 /// Rectified pixel ← point of the left rectified camera's frame.
 cv::Mat projection(const RectifiedCamera& camera, double baseline) {
@@ -62,6 +71,10 @@ std::string rectification_text(const std::filesystem::path& path,
   file << "image_width" << pair.width_px << "image_height" << pair.height_px;
   file << "M1" << to_opencv(calibration.left.matrix) << "D1" << distortion_of(calibration.left);
   file << "M2" << to_opencv(calibration.right.matrix) << "D2" << distortion_of(calibration.right);
+  if (needs_lens_kind(calibration.left) || needs_lens_kind(calibration.right)) {
+    file << "fisheye_model1" << is_fisheye(calibration.left) << "fisheye_model2"
+         << is_fisheye(calibration.right);
+  }
   file << "R" << to_opencv(calibration.rotation) << "T" << to_opencv(calibration.translation);
   file << "R1" << to_opencv(pair.left.rotation) << "R2" << to_opencv(pair.right.rotation);
   file << "P1" << projection(pair.left, 0) << "P2" << projection(pair.right, pair.baseline);

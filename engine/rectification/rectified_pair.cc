@@ -103,7 +103,8 @@ RectifiedPair unchanged_pair(const StereoCalibration& calibration, int width_px,
           .right = {.matrix = calibration.right.matrix},
           .baseline = calibration.baseline(),
           .doffs_px = calibration.doffs_px(),
-          .valid = {.x = 0, .y = 0, .width = width_px, .height = height_px}};
+          .valid = {.x = 0, .y = 0, .width = width_px, .height = height_px},
+          .remarks = calibration.remarks};
 }
 
 /// Throws errors that do not name the calibration's file.
@@ -154,7 +155,8 @@ RectifiedPair pair_of(const StereoCalibration& calibration, int width_px, int he
           .right = camera(calibration.right, right_rotation),
           .baseline = calibration.baseline(),
           .doffs_px = 0,
-          .valid = pixels_within(*inner, shown, width_px, height_px)};
+          .valid = pixels_within(*inner, shown, width_px, height_px),
+          .remarks = calibration.remarks};
 }
 }  // namespace
 
@@ -168,7 +170,7 @@ RectifiedPair rectified_pair(const StereoCalibration& calibration, int width_px,
                              const RectificationOptions& options) {
   options.validate();
   try {
-    return pair_of(calibration, width_px, height_px, options);
+    return pair_of(calibration.for_images(width_px, height_px), width_px, height_px, options);
   } catch (const Error& error) {
     throw calibration.file.empty() ? error
                                    : Error(fmt::format("{}: {}", calibration.file, error.what()));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "engine/rectification/stereo_calibration.h"
 
@@ -48,6 +49,7 @@ struct RectifiedPair {
   double doffs_px = 0;
   /// The area without black pixels in either image.
   PixelRectangle valid;
+  std::vector<Remark> remarks = {};  ///< of the calibration
 
   [[nodiscard]] const RectifiedCamera& camera(Side side) const {
     return side == Side::kLeft ? left : right;
@@ -61,6 +63,9 @@ struct RectifiedPair {
 /// = Z × X (EQUATIONS §6), so both cameras rotate by about the same angle. Both rectified cameras
 /// have one focal length, the same in x and y, and one principal point: infinity has disparity 0. A
 /// rectified calibration is returned unchanged.
+///
+/// A calibration for another size of images of this shape is scaled
+/// (StereoCalibration::for_images).
 ///
 /// Throws Error, naming the calibration's file, quantity and limit, for an image size that
 /// contradicts the calibration, a baseline more than 45° off the cameras' x axes (cameras one above

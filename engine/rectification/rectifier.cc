@@ -29,8 +29,8 @@ Rectifier::Rectifier(const StereoCalibration& calibration, int width_px, int hei
     : photograph_size_{width_px, height_px},
       pair_(rectified_pair(calibration, width_px, height_px, options)),
       needs_rectification_(!calibration.is_rectified),
-      views_{make_view(calibration.left, Side::kLeft), make_view(calibration.right, Side::kRight)} {
-}
+      views_{make_view(calibration.for_images(width_px, height_px).left, Side::kLeft),
+             make_view(calibration.for_images(width_px, height_px).right, Side::kRight)} {}
 
 Rectifier::View Rectifier::make_view(const Camera& camera, Side side) const {
   const RectifiedCamera& rectified = pair_.camera(side);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -35,6 +36,48 @@ void StereoCalibration::set_baseline_m(double metres) {
   translation *= metres / baseline();
   metres_per_unit = 1;
   has_scale = true;
+}
+
+std::optional<Camera> SizedCamera::scaled_to(ImageSize other) const {
+  const double x_scale = static_cast<double>(other.width_px) / size.width_px;
+  const double y_scale = static_cast<double>(other.height_px) / size.height_px;
+  constexpr double kLeastChange = 1.1;
+  const bool is_known = size.width_px > 0 && size.height_px > 0;
+  // The sides of the smaller size are whole pixels.
+  const double off_px = std::abs(x_scale / y_scale - 1) *
+                        std::min({size.width_px, size.height_px, other.width_px, other.height_px});
+  if (!is_known || !(off_px <= 1) || std::max(x_scale, 1 / x_scale) < kLeastChange) {
+    return std::nullopt;
+  }
+  Camera scaled = camera;
+  scaled.matrix.row(0) *= x_scale;
+  scaled.matrix.row(1) *= y_scale;
+  // Pixel centres are at integers: the left edge, at −1/2, stays where it is.
+  scaled.matrix(0, 2) += (x_scale - 1) / 2;
+  scaled.matrix(1, 2) += (y_scale - 1) / 2;
+  return scaled;
+}
+
+StereoCalibration StereoCalibration::for_images(int width_px, int height_px) const {
+  StereoCalibration result = *this;
+  if (!image_size || (image_size->width_px == width_px && image_size->height_px == height_px)) {
+    return result;
+  }
+  const ImageSize size{width_px, height_px};
+  const auto left_scaled = SizedCamera{left, *image_size}.scaled_to(size);
+  const auto right_scaled = SizedCamera{right, *image_size}.scaled_to(size);
+  if (left_scaled && right_scaled) {
+    result.left = *left_scaled;
+    result.right = *right_scaled;
+    result.image_size = size;
+    result.remarks.push_back(
+        {.kind = Remark::Kind::kNote,
+         .subject = "calibration",
+         .text = fmt::format("{} is for images of {}x{} and is scaled to {}x{}",
+                             file.empty() ? "the calibration" : file, image_size->width_px,
+                             image_size->height_px, width_px, height_px)});
+  }
+  return result;
 }
 
 void StereoCalibration::validate() const {

@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/image/side.h"
 #include "engine/rectification/camera.h"
 #include "engine/rectification/kitti_cameras.h"
+#include "engine/remark.h"
 
 namespace vantage {
 
@@ -19,7 +21,13 @@ struct ImageSize {
 /// A lens and the size of its images.
 struct SizedCamera {
   Camera camera;
-  ImageSize size;  ///< 0×0 if the file does not tell
+  ImageSize size;                    ///< 0×0 if the file does not tell
+  std::vector<Remark> remarks = {};  ///< what was assumed when it was read
+
+  /// The camera of the same pictures at another size. Empty where that cannot be: the file does not
+  /// tell its size, the ratios of the sides do not agree to a pixel, or the sizes differ by less
+  /// than a tenth, as those of cropped pictures do.
+  [[nodiscard]] std::optional<Camera> scaled_to(ImageSize other) const;
 };
 
 /// Two cameras and their relative pose: x_right = rotation · x_left + translation for a point in
@@ -43,6 +51,7 @@ struct StereoCalibration {
   bool has_other_cameras = false;      ///< the file has both pairs of KITTI's
   std::string format = "calibration";  ///< for messages: "KITTI, cameras 0 and 1"
   std::string file = {};               ///< for messages: source file, if any
+  std::vector<Remark> remarks = {};    ///< what was assumed when it was read or scaled
 
   /// Distance of the cameras, in the calibration's unit.
   [[nodiscard]] double baseline() const { return translation.norm(); }
@@ -52,6 +61,10 @@ struct StereoCalibration {
   /// −doffs_px(): Z = fx · baseline / (d + doffs_px()).
   [[nodiscard]] double doffs_px() const { return right.matrix(0, 2) - left.matrix(0, 2); }
 
+  /// The calibration of images of this size: a scaled one, with a remark, where the file is for
+  /// another size of the same shape (SizedCamera::scaled_to()); else itself.
+  [[nodiscard]] StereoCalibration for_images(int width_px, int height_px) const;
+
   /// Throws Error of one line that names the quantity, its value and its limit.
   void validate() const;
   /// Throws Error when images of this size cannot come from these cameras: size other than the
@@ -60,33 +73,38 @@ struct StereoCalibration {
   void check_image_size(int width_px, int height_px) const;
 };
 
-/// Reads a calibration; its content, not its name, decides the format:
-///  - OpenCV YAML or XML: matrices M1 or K1 or cameraMatrix1 (3×3), D1 or distCoeffs1 (absent: no
-///  distortion), the same with 2, R (3×3) and T (3×1 or 1×3), all in one file; optionally
-///  image_width and image_height, or imageSize, or image_size. Rectified if the cameras are equal
-///  up to cx, without distortion, and displaced along x only. Without M1, the rectified cameras of
-///  P1 and P2 (3×4), or else of Q (4×4). metres_per_unit, if in the file; 0 means no scale.
-///  - Middlebury calib.txt: cam0, cam1, baseline, width, height, and doffs, which must agree with
-///  the cameras to 0.1 px. Rectified, in millimetres.
-///  - KITTI calib.txt: P0 and P1 (grey) or P2 and P3 (colour), or the same under the names
-///  P_rect_00 …, or two or four lines of 12 numbers without names. Rectified, in metres. `cameras`
-///  selects the pair; empty: the grey one if the file has it. For other formats it must be empty.
-/// Fisheye models are refused if the file names them (fisheye_model of OpenCV's samples,
-/// distortion_model, camera_model or model); their four coefficients alone look like those of other
-/// lenses. The result is valid. Throws Error of one line naming the file for anything it cannot
-/// read. Thread rule: may be called concurrently.
+/// What a file does not tell, or not always.
+struct CalibrationChoice {
+  std::optional<KittiCameras> kitti_cameras;  ///< of a file of KITTI; empty: the grey ones
+  std::optional<LensKind> lens;               ///< of four coefficients whose kind no key names
+};
+
+/// The files that the name of a calibration means: itself; or two, separated by a comma, unless
+/// there is a file of that name; or itself and the one of the other camera, where that lies beside
+/// it and the file is of one camera (left.yaml and right.yaml, cam0/sensor.yaml and
+/// cam1/sensor.yaml). A file that does not exist is among them.
+std::vector<std::filesystem::path> calibration_files(const std::filesystem::path& name);
+
+/// Reads a calibration; its content, not its name, decides the format. CONVENTIONS lists the
+/// formats: OpenCV's YAML, XML and JSON under many names (rectification/calibration/names), files
+/// of ROS, Kalibr, EuRoC and ORB-SLAM, Middlebury and ETH3D, KITTI and DrivingStereo, COLMAP.
+/// `path` may name two files (calibration_files()). Cameras that a file numbers are put in order:
+/// the right one is to the right. Rectified if the cameras are equal up to cx, without distortion,
+/// and displaced along x only. The result is valid; what was assumed is among its remarks. Throws
+/// Error of one line naming the file for anything it cannot read. Thread rule: may be called
+/// concurrently.
 StereoCalibration read_stereo_calibration(const std::filesystem::path& path,
-                                          std::optional<KittiCameras> cameras = std::nullopt);
+                                          const CalibrationChoice& choice = {});
 
 /// The rectified cameras of OpenCV's matrix Q: (X, Y, Z, 1) ~ Q · (x, y, d, 1), with the rows
 /// (1 0 0 -cx), (0 a 0 -a·cy), (0 0 0 f), (0 0 1/B doffs/B); a is 1 in Q of OpenCV, else fx / fy.
 /// Throws Error for another one.
 StereoCalibration calibration_of_depth_matrix(const Eigen::Matrix4d& q);
 
-/// read_stereo_calibration() for images that were rectified with the calibration of a file: of an
-/// OpenCV file with P1 and P2, or with Q, the cameras of the rectified images, although it has M1
-/// and M2 too.
+/// read_stereo_calibration() for images that were rectified with the calibration of a file: of a
+/// file with P1 and P2, or with Q, the cameras of the rectified images, although it has M1 and M2
+/// too.
 StereoCalibration read_rectified_calibration(const std::filesystem::path& path,
-                                             std::optional<KittiCameras> cameras = std::nullopt);
+                                             const CalibrationChoice& choice = {});
 
 }  // namespace vantage

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <tuple>
 #include <utility>
@@ -63,10 +64,24 @@ void require_same_shape(const SceneImage& image, const Photograph& photograph,
   }
 }
 
-void require_size_of_camera(const SceneImage& image, const Photograph& photograph) {
+/// Scales the camera where it is for another size of the photograph.
+void fit_camera(SceneImage& image, const Photograph& photograph, std::vector<Remark>& remarks) {
   const ImageSize size = image.camera_size;
   if (size.width_px != 0 &&
       (size.width_px != photograph.width() || size.height_px != photograph.height())) {
+    image.camera_size = {photograph.width(), photograph.height()};
+    if (const auto scaled = SizedCamera{image.camera->lens, size}.scaled_to(image.camera_size)) {
+      image.camera->lens = *scaled;
+      if (remarks.empty() || remarks.back().subject != "camera") {
+        remarks.push_back({.kind = Remark::Kind::kNote,
+                           .subject = "camera",
+                           .text = fmt::format("cameras are for images of {}x{} and are scaled to "
+                                               "{}x{}",
+                                               size.width_px, size.height_px, photograph.width(),
+                                               photograph.height())});
+      }
+      return;
+    }
     throw Error(fmt::format("{} is {}×{}, expected {}×{} as its camera", image.file.string(),
                             photograph.width(), photograph.height(), size.width_px,
                             size.height_px));
@@ -91,9 +106,9 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
   scene_.settings = parse_json(options_.settings, "settings").dump();
   WhiteLevelSearch white(options_.white_level);
   Photograph first;
-  for (const SceneImage& image : images_) {
+  for (SceneImage& image : images_) {
     Photograph photograph = read_photograph(image.file, options_.reading);
-    require_size_of_camera(image, photograph);
+    fit_camera(image, photograph, remarks_);
     white.add(photograph);
     if (&image == &images_.front()) {
       first = std::move(photograph);
@@ -106,7 +121,7 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
   if (level.scales(first)) {
     scene_.white_level = level.value;
   }
-  remarks_ = std::move(level.remarks);
+  std::ranges::move(level.remarks, std::back_inserter(remarks_));
   scene_.reading = options_.reading;
   scene_.width_px = first.width();
   scene_.height_px = first.height();

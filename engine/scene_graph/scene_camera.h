@@ -14,7 +14,7 @@ struct SceneCamera {
 
   friend bool operator==(const SceneCamera& a, const SceneCamera& b) {
     return a.lens.matrix == b.lens.matrix && a.lens.distortion == b.lens.distortion &&
-           a.pose == b.pose;
+           a.lens.lens == b.lens.lens && a.pose == b.pose;
   }
 };
 

@@ -39,10 +39,14 @@ Json rows_of(const Eigen::Matrix3d& matrix) {
 
 Json json_of(const SceneCamera& camera) {
   const Eigen::Vector3d& t = camera.pose.translation;
-  return {{"K", rows_of(camera.lens.matrix)},
-          {"distortion", camera.lens.distortion},
-          {"R", rows_of(camera.pose.rotation)},
-          {"t", {t.x(), t.y(), t.z()}}};
+  Json json = {{"K", rows_of(camera.lens.matrix)},
+               {"distortion", camera.lens.distortion},
+               {"R", rows_of(camera.pose.rotation)},
+               {"t", {t.x(), t.y(), t.z()}}};
+  if (camera.lens.lens == LensKind::kFisheye) {
+    json["lens"] = "fisheye";
+  }
+  return json;
 }
 
 Eigen::Matrix3d matrix_of(const Json& rows) {
@@ -60,6 +64,8 @@ SceneCamera camera_of(const Json& json, const ImageSize& size, const std::string
   SceneCamera camera;
   camera.lens.matrix = matrix_of(json.at("K"));
   camera.lens.distortion = json.at("distortion").get<std::vector<double>>();
+  camera.lens.lens =
+      json.value("lens", "standard") == "fisheye" ? LensKind::kFisheye : LensKind::kStandard;
   camera.pose.rotation = matrix_of(json.at("R"));
   const auto t = json.at("t").get<std::array<double, 3>>();
   camera.pose.translation = {t[0], t[1], t[2]};

@@ -29,21 +29,28 @@ struct LensName {
   std::string_view name;
   std::size_t parameters;  ///< of the file
   bool has_one_focal_length;
+  LensKind kind = LensKind::kStandard;
 };
 
-constexpr std::array kLensModels = {
-    LensName{"SIMPLE_PINHOLE", 3, true}, LensName{"PINHOLE", 4, false},
-    LensName{"SIMPLE_RADIAL", 4, true},  LensName{"RADIAL", 5, true},
-    LensName{"OPENCV", 8, false},        LensName{"FULL_OPENCV", 12, false}};
+constexpr std::array kLensModels = {LensName{"SIMPLE_PINHOLE", 3, true},
+                                    LensName{"PINHOLE", 4, false},
+                                    LensName{"SIMPLE_RADIAL", 4, true},
+                                    LensName{"RADIAL", 5, true},
+                                    LensName{"OPENCV", 8, false},
+                                    LensName{"FULL_OPENCV", 12, false},
+                                    LensName{"OPENCV_FISHEYE", 8, false, LensKind::kFisheye},
+                                    LensName{"SIMPLE_RADIAL_FISHEYE", 4, true, LensKind::kFisheye},
+                                    LensName{"RADIAL_FISHEYE", 5, true, LensKind::kFisheye}};
 
 const LensName& lens_model(std::string_view name, const TextLines& lines) {
   const auto* found =
       std::ranges::find_if(kLensModels, [&](const LensName& lens) { return lens.name == name; });
   if (found == kLensModels.end()) {
-    lines.fail(
-        fmt::format("the camera model is '{}', expected SIMPLE_PINHOLE, PINHOLE, "
-                    "SIMPLE_RADIAL, RADIAL, OPENCV or FULL_OPENCV",
-                    quotable(name)));
+    lines.fail(fmt::format(
+        "the camera model is '{}', expected SIMPLE_PINHOLE, PINHOLE, "
+        "SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE, SIMPLE_RADIAL_FISHEYE "
+        "or RADIAL_FISHEYE",
+        quotable(name)));
   }
   return *found;
 }
@@ -53,6 +60,7 @@ Camera camera_of(const LensName& lens, std::vector<double> values) {
     values.insert(values.begin(), values.front());
   }
   Camera camera;
+  camera.lens = lens.kind;
   camera.matrix(0, 0) = values[0];
   camera.matrix(1, 1) = values[1];
   camera.matrix(0, 2) = values[2] - 0.5;
@@ -117,6 +125,7 @@ constexpr double kHalf = 0.5;
 
 std::string camera_line(const SizedCamera& sized) {
   const Camera& camera = sized.camera;
+  const bool is_fisheye = camera.lens == LensKind::kFisheye;
   const std::size_t coefficients = camera.is_without_distortion()  ? 0
                                    : camera.distortion.size() <= 4 ? 4
                                                                    : 8;
@@ -126,6 +135,7 @@ std::string camera_line(const SizedCamera& sized) {
   }
   std::string line = fmt::format("1 {} {} {}",
                                  coefficients == 0   ? "PINHOLE"
+                                 : is_fisheye        ? "OPENCV_FISHEYE"
                                  : coefficients == 4 ? "OPENCV"
                                                      : "FULL_OPENCV",
                                  sized.size.width_px, sized.size.height_px);

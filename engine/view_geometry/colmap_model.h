@@ -21,8 +21,9 @@ struct ColmapImage {
 };
 
 /// Parses cameras.txt: lines CAMERA_ID MODEL WIDTH HEIGHT PARAMS…, by their number. Models:
-/// SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV. COLMAP's pixel centres are
-/// at halves, so principal points are moved by half a pixel. Throws Error naming `file` and the
+/// SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, FULL_OPENCV, OPENCV_FISHEYE,
+/// SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE. COLMAP's pixel centres are at halves, so principal points
+/// are moved by half a pixel. Throws Error naming `file` and the
 /// line.
 std::map<long long, SizedCamera> parse_colmap_cameras(std::string_view text,
                                                       const std::string& file);
@@ -44,7 +45,8 @@ struct PosedImageName {
 };
 
 /// Writes a COLMAP model as text, cameras.txt, images.txt and points3D.txt, to a folder that
-/// exists. All images are of one `camera` (PINHOLE, OPENCV or FULL_OPENCV), whose size is known.
+/// exists. All images are of one `camera` (PINHOLE, OPENCV, FULL_OPENCV or
+/// OPENCV_FISHEYE), whose size is known.
 /// Sightings of `points` are numbers of `images`, and positions from the principal point without
 /// distortion, in pixels of fx. Points are grey. Throws Error, also for a lens of more than 8
 /// coefficients, and for names with line breaks.

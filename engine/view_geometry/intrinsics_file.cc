@@ -10,7 +10,7 @@
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/text_lines.h"
-#include "engine/rectification/calibration_entries.h"
+#include "engine/rectification/calibration/camera_reading.h"
 #include "engine/rectification/rotations.h"
 #include "engine/view_geometry/colmap_model.h"
 
@@ -19,15 +19,6 @@ namespace {
 
 constexpr std::array kPoseNames = {std::string_view("extrinsic_parameters"),
                                    std::string_view("Extrinsic_Parameters")};
-
-bool is_xml(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
-  return first != std::string_view::npos && text[first] == '<';
-}
-
-CalibrationEntries entries_of(std::string_view text) {
-  return is_xml(text) ? xml_entries(text) : yaml_entries(text);
-}
 
 /// The first of these entries that exists; null if none does.
 const CalibrationEntry* find(const CalibrationEntries& entries,
@@ -51,42 +42,6 @@ std::vector<double> values_of(const CalibrationEntry& entry, std::string_view na
         fmt::format("{}: {} has {} values, expected {}", file, name, entry.values.size(), count));
   }
   return entry.values;
-}
-
-void refuse_fisheyes(const CalibrationEntries& entries, const std::string& file) {
-  const CalibrationEntry* model = find(entries, {"distortion_model", "camera_model", "model"});
-  if (model != nullptr && (model->word == "fisheye" || model->word == "equidistant" ||
-                           model->word == "kannala_brandt" || model->word == "KANNALA_BRANDT")) {
-    throw Error(
-        fmt::format("{}: is of a fisheye lens, expected OpenCV's standard model "
-                    "(k1 k2 p1 p2 ...)",
-                    file));
-  }
-}
-
-int side_of(double value, const std::string& file) {
-  if (!(value >= 1 && value <= 1e6) || value != std::floor(value)) {
-    throw Error(fmt::format("{}: the image size holds {}, expected whole pixels", file, value));
-  }
-  return static_cast<int>(value);
-}
-
-ImageSize size_of(const CalibrationEntries& entries, const std::string& file) {
-  const CalibrationEntry* width = find(entries, {"image_width"});
-  const CalibrationEntry* height = find(entries, {"image_height"});
-  if (width != nullptr && height != nullptr) {
-    return {side_of(values_of(*width, "image_width", 1, file)[0], file),
-            side_of(values_of(*height, "image_height", 1, file)[0], file)};
-  }
-  if (const CalibrationEntry* size = find(entries, {"image_size", "imageSize"})) {
-    const std::vector<double> sides = values_of(*size, "image_size", 2, file);
-    return {side_of(sides[0], file), side_of(sides[1], file)};
-  }
-  return {};
-}
-
-Eigen::Matrix3d matrix_of(const std::vector<double>& rows) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(rows.data());
 }
 
 /// The left 3×3 part of a projection P = K (I | t).
@@ -158,47 +113,47 @@ const CalibrationEntry* projection_of(const CalibrationEntries& entries, int kit
   return nullptr;
 }
 
-SizedCamera camera_of_entries(const CalibrationEntries& entries, const std::string& file,
-                              int kitti_camera) {
-  refuse_fisheyes(entries, file);
+SizedCamera camera_of_entries(const CalibrationNames& names, const std::string& file,
+                              const IntrinsicsChoice& choice) {
+  CameraReading reading = read_camera(names, CameraLabel::kNone);
   SizedCamera sized;
-  const CalibrationEntry* matrix = find(entries, {"camera_matrix", "Camera_Matrix", "cameraMatrix",
-                                                  "K", "K1", "M1", "cameraMatrix1"});
-  const CalibrationEntry* projection = projection_of(entries, kitti_camera);
-  if (projection != nullptr && matrix == nullptr) {
+  const CalibrationEntry* projection = projection_of(names.entries(), choice.kitti_camera);
+  if (!reading.matrix && projection != nullptr && names.entries().count("M1") == 0) {
     sized.camera.matrix = matrix_of_projection(values_of(*projection, "P", 12, file));
     return sized;
   }
-  if (matrix == nullptr) {
+  if (!reading.matrix) {
+    reading = read_camera(names, CameraLabel::kFirst);
+  }
+  if (!reading.matrix) {
     throw Error(
-        fmt::format("{}: holds no camera_matrix (or K), expected OpenCV's YAML or XML, "
-                    "calib.txt of KITTI, cameras.txt of COLMAP, or fx fy cx cy",
-                    file));
+        fmt::format("there is no camera matrix: {}; or calib.txt of KITTI, cameras.txt of "
+                    "COLMAP, or fx fy cx cy",
+                    names.found_and_taken()));
   }
-  sized.camera.matrix = matrix_of(values_of(*matrix, "camera_matrix", 9, file));
-  if (const CalibrationEntry* distortion =
-          find(entries, {"distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "D",
-                         "D1", "distCoeffs1"})) {
-    sized.camera.distortion = values_of(*distortion, "distortion_coefficients", 0, file);
+  if (const auto unknown = names.unknown_distortions();
+      !unknown.empty() && reading.distortion_name.empty()) {
+    throw Error(
+        fmt::format("{} looks like distortion, but is not a name that is known, expected {}",
+                    unknown[0], CalibrationNames::taken(CalibrationValue::kDistortion)));
   }
-  sized.size = size_of(entries, file);
+  choose_lenses({&reading, 1}, choice.lens, file, sized.remarks);
+  sized.camera = reading.camera();
+  sized.size = reading.size.value_or(ImageSize());
   return sized;
 }
 
 }  // namespace
 
-SizedCamera parse_intrinsics(std::string_view text, const std::string& file, int kitti_camera) {
-  SizedCamera sized;
-  if (is_xml(text)) {
-    sized = camera_of_entries(xml_entries(text), file, kitti_camera);
-  } else if (const auto camera = camera_of_numbers(numbers_alone(text, file), kitti_camera)) {
-    sized = *camera;
-  } else if (looks_like_colmap(text, file)) {
-    sized = camera_of_colmap(text, file);
-  } else {
-    sized = camera_of_entries(yaml_entries(text), file, kitti_camera);
+SizedCamera parse_intrinsics(std::string_view text, const std::string& file,
+                             const IntrinsicsChoice& choice) {
+  auto known = camera_of_numbers(numbers_alone(text, file), choice.kitti_camera);
+  if (!known && looks_like_colmap(text, file)) {
+    known = camera_of_colmap(text, file);
   }
+  SizedCamera sized;
   try {
+    sized = known ? *known : camera_of_entries(CalibrationNames(entries_of(text)), file, choice);
     sized.camera.validate("camera");
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", file, error.what()));
@@ -206,8 +161,8 @@ SizedCamera parse_intrinsics(std::string_view text, const std::string& file, int
   return sized;
 }
 
-SizedCamera read_intrinsics(const std::filesystem::path& file, int kitti_camera) {
-  return parse_intrinsics(read_file_text(file), file.string(), kitti_camera);
+SizedCamera read_intrinsics(const std::filesystem::path& file, const IntrinsicsChoice& choice) {
+  return parse_intrinsics(read_file_text(file), file.string(), choice);
 }
 
 bool has_opencv_poses(std::string_view text) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,19 +11,25 @@
 
 namespace vantage {
 
+/// What a file of intrinsics may not tell.
+struct IntrinsicsChoice {
+  int kitti_camera = 0;                         ///< of a file of KITTI's, 0 to 3
+  std::optional<LensKind> lens = std::nullopt;  ///< of four coefficients
+};
+
 /// Parses the intrinsics of one camera; the content tells the format:
-///  - OpenCV YAML or XML, and camera_info of ROS: camera_matrix, K, cameraMatrix or K1, M1, …
-///  (3×3); distortion_coefficients, distCoeffs or D (absent: none); image_width and image_height,
-///  or image_size.
+///  - YAML, XML and JSON of OpenCV, ROS and others: the names of rectification/calibration/names,
+///  without a camera's number or with that of the first one.
 ///  - COLMAP's cameras.txt with one camera.
-///  - KITTI's calib.txt: P0 to P3, or its lines without names: that of `kitti_camera`, 0 to 3, or
-///  the first if the file lacks it.
+///  - KITTI's calib.txt: P0 to P3, or its lines without names: the first if the file lacks the
+///  camera that is chosen.
 ///  - Numbers: fx fy cx cy, or fx fy cx cy k1 k2 p1 p2 [k3].
-/// The camera is valid; its size is 0×0 if the file does not tell. Fisheye models are refused.
-/// Throws Error naming `file`. Thread rule: may be called concurrently.
-SizedCamera parse_intrinsics(std::string_view text, const std::string& file, int kitti_camera = 0);
+/// The camera is valid; its size is 0×0 if the file does not tell. Throws Error naming `file`.
+/// Thread rule: may be called concurrently.
+SizedCamera parse_intrinsics(std::string_view text, const std::string& file,
+                             const IntrinsicsChoice& choice = {});
 /// parse_intrinsics() of a file. Throws Error, also when it cannot be read.
-SizedCamera read_intrinsics(const std::filesystem::path& file, int kitti_camera = 0);
+SizedCamera read_intrinsics(const std::filesystem::path& file, const IntrinsicsChoice& choice = {});
 
 /// Whether a text is OpenCV's YAML or XML with extrinsic_parameters.
 bool has_opencv_poses(std::string_view text);

@@ -177,7 +177,7 @@ TEST(IntrinsicsFile, CameraOfKitti) {
     return fmt::format("{} 7 0 {} 0 0 7 5 0 0 0 1 0\n", name, camera);
   };
   const auto cx = [](const std::string& text, int camera) {
-    return parse_intrinsics(text, "calib.txt", camera).camera.matrix(0, 2);
+    return parse_intrinsics(text, "calib.txt", {.kitti_camera = camera}).camera.matrix(0, 2);
   };
   std::string named;
   std::string raw;

@@ -253,14 +253,18 @@ TEST_F(CalibrationFiles, Kitti) {
 
   put_text(file_, text);
   EXPECT_TRUE(grey.has_other_cameras);
-  EXPECT_NEAR(read_stereo_calibration(file_, KittiCameras::kColour).baseline(), 0.6, 1e-12);
-  EXPECT_NEAR(read_rectified_calibration(file_, KittiCameras::kGrey).baseline(), 0.5, 1e-12);
+  EXPECT_NEAR(read_stereo_calibration(file_, {.kitti_cameras = KittiCameras::kColour}).baseline(),
+              0.6, 1e-12);
+  EXPECT_NEAR(read_rectified_calibration(file_, {.kitti_cameras = KittiCameras::kGrey}).baseline(),
+              0.5, 1e-12);
   put_text(file_, text.substr(text.find("P2")));
-  EXPECT_EQ(error_of([&] { read_stereo_calibration(file_, KittiCameras::kGrey); }),
-            file_ + ": there is no P0 in it, expected a 3x4 matrix");
+  EXPECT_EQ(
+      error_of([&] { read_stereo_calibration(file_, {.kitti_cameras = KittiCameras::kGrey}); }),
+      file_ + ": there is no P0 in it, expected a 3x4 matrix");
   put_text(file_, kMiddlebury);
-  EXPECT_EQ(error_of([&] { read_stereo_calibration(file_, KittiCameras::kGrey); }),
-            file_ + ": has format Middlebury, expected KITTI: only its cameras are selected");
+  EXPECT_EQ(
+      error_of([&] { read_stereo_calibration(file_, {.kitti_cameras = KittiCameras::kGrey}); }),
+      file_ + ": has format Middlebury, expected KITTI: only its cameras are selected");
 
   std::string raw = "calib_time: 09-Jan-2012 13:57:47\ncorner_dist: 9.950000e-02\n";
   raw += replaced(replaced(text.substr(0, text.find("P2")), "P0", "P_rect_00"), "P1", "P_rect_01");

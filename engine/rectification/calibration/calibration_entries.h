@@ -15,6 +15,10 @@ struct CalibrationEntry {
   std::vector<double> values = {};  ///< row by row, all finite
   std::string problem = {};         ///< why there are no values, else empty
   std::string word = {};            ///< the first non-numeric word, at most 20 characters of it
+
+  /// Nothing is written there, as in [].
+  [[nodiscard]] bool is_empty() const { return problem == kNoNumbers; }
+  static constexpr const char* kNoNumbers = "holds no numbers";
 };
 
 /// By name; of duplicate names the first one counts.
@@ -28,12 +32,21 @@ using CalibrationEntries = std::map<std::string, CalibrationEntry, std::less<>>;
 // version 4.6 a file of nested brackets or tags overflows the stack, and wrong rows and cols
 // allocate their product. Its errors name OpenCV's source lines, not the file.
 
-/// `name: values` from the start of a line to the next name there: YAML (sequences, and matrices
-/// with rows, cols and data as OpenCV writes them) and KITTI's text files.
+//
+// Names of nested nodes are joined with dots, cam0.intrinsics; matrices are nodes with rows, cols
+// and data, as OpenCV writes them.
+
+/// `name: values`: YAML (sequences, maps by indentation) and KITTI's text files.
 CalibrationEntries yaml_entries(std::string_view text);
 
-/// <name>values</name> below the root element; matrices as OpenCV writes them.
+/// <name>values</name> below the root element.
 CalibrationEntries xml_entries(std::string_view text);
+
+/// Throws Error where it is not JSON.
+CalibrationEntries json_entries(std::string_view text);
+
+/// Those of any of the three, as the text begins.
+CalibrationEntries entries_of(std::string_view text);
 
 /// `name=values` line by line, as Middlebury writes them.
 CalibrationEntries assignment_entries(std::string_view text);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "engine/rectification/calibration/camera_reading.h"
+
+namespace vantage {
+
+/// Which cameras are wanted of a file that has those of photographs and of rectified images.
+enum class CameraChoice { kPhotographs, kRectified };
+
+// `file` is the name for messages; the results are not validated.
+
+/// Two cameras of one list of entries. Where the second one stands, the first of these tells: R and
+/// T, Stereo.T_c1_c2, T_cn_cnm1, T_BS or T_cam_imu of both, R1, P1, R2 and P2, Camera.bf, a
+/// baseline; all but R and T are in metres. Throws Error for what is missing or wrong.
+StereoCalibration from_names(const CalibrationNames& names, CameraChoice cameras,
+                             const CalibrationChoice& choice, const std::string& file);
+
+/// Whether the entries are of one camera, and do not say which.
+bool are_of_one_camera(const CalibrationNames& names);
+/// Of two files of one camera each.
+StereoCalibration from_two_cameras(const std::array<CalibrationNames, 2>& names,
+                                   CameraChoice cameras, const CalibrationChoice& choice,
+                                   const std::string& file);
+/// Of the file of the right camera alone: its projection tells all of a rectified pair.
+StereoCalibration from_right_camera(const CalibrationNames& names, CameraChoice cameras);
+
+}  // namespace vantage
