@@ -75,7 +75,8 @@ void add_check_settings(Settings& settings, CheckJob& job) {
                                  "Stereo layout of pictures that hold both images, as of 'run'",
                                  "none");
   settings.input_path("calibration", job.calibration, "FILE",
-                      "Cameras, to rectify the pair first: OpenCV, Middlebury or KITTI file");
+                      "Cameras, to rectify the pair first: OpenCV, ROS, Kalibr, Middlebury, KITTI "
+                      "or other file, or two, A,B");
   add_calibration_choice_settings(settings, job.calibration_choice);
   add_scene_mask_settings(settings, job.input.masks, true);
   add_white_level_setting(settings, job.input.white_level);

@@ -21,7 +21,8 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   add_pair_by_setting(settings, job.input.pair_by);
   settings.input_path(
       "calibration", job.calibration, "FILE",
-      "Cameras: OpenCV, Middlebury or KITTI file; default: estimated from the images");
+      "Cameras: OpenCV, ROS, Kalibr, Middlebury, KITTI or other file, or two, A,B; default: "
+      "estimated from the images");
   add_calibration_choice_settings(settings, job.calibration_choice);
   settings.number("baseline", job.baseline_m, "METRES",
                   "Distance of the cameras: gives estimated cameras their scale; auto: that of "

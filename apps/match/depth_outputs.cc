@@ -86,7 +86,9 @@ DepthFiles make_depth_files(const DepthOutputs& outputs, const CloudSource& sour
                   "depths {:.4g} to {:.4g} m, median {:.4g} m, in {:.1f} % of the pixels -> {}",
                   values["min_m"].get<double>(), values["max_m"].get<double>(),
                   values["median_m"].get<double>(), 100 * share, outputs.depth)
-            : fmt::format("no pixel has a depth -> {}", outputs.depth));
+            : fmt::format("no pixel has a depth: is the baseline {:.4g} m, or is "
+                          "--calibration-unit another one? -> {}",
+                          source.camera.scale.baseline, outputs.depth));
     report.add_result("depth", std::move(values));
   }
   if (!outputs.cloud.empty()) {

@@ -11,10 +11,12 @@
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/text_lines.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/io/video/frame_source.h"
+#include "engine/rectification/calibration/posed_images.h"
 #include "engine/rectification/kitti_cameras.h"
-#include "engine/view_geometry/colmap_model.h"
 #include "engine/view_geometry/intrinsics_file.h"
+#include "engine/view_geometry/nerf_transforms.h"
 #include "engine/view_geometry/trajectory_file.h"
 
 namespace vantage::apps {
@@ -24,21 +26,39 @@ namespace fs = std::filesystem;
 
 constexpr double kMaxTimeDifference_s = 0.02;
 
-std::vector<SceneImage> images_of_colmap(const fs::path& folder, const std::string& images,
-                                         const fs::path& intrinsics) {
+/// `name` of a model is the file in the folder `images`, or the one of the name without folders;
+/// NeRF tools leave out extensions.
+fs::path file_of(const fs::path& images, const fs::path& name) {
+  for (const fs::path& path : {images / name, images / name.filename()}) {
+    for (const char* extension : {"", ".png", ".jpg"}) {
+      const fs::path file = path.string() + extension;
+      if (fs::is_regular_file(file)) {
+        return file;
+      }
+    }
+  }
+  return images / name;
+}
+
+void require_folder(const std::string& images, const fs::path& intrinsics) {
   if (!intrinsics.empty()) {
-    throw UsageError("--intrinsics is given with a COLMAP model, which has its own cameras");
+    throw UsageError("--intrinsics is given with a model, which has its own cameras");
   }
   if (!fs::is_directory(images)) {
     throw UsageError(
         fmt::format("--images is '{}', expected the folder of the model's images", images));
   }
+}
+
+/// `model`: the file that names them.
+std::vector<SceneImage> images_of_model(const std::vector<PosedImage>& posed,
+                                        const std::string& images, const fs::path& model) {
   std::vector<SceneImage> result;
-  for (const ColmapImage& image : read_colmap_model(folder)) {
-    const fs::path file = fs::path(images) / image.name;
+  for (const PosedImage& image : posed) {
+    const fs::path file = file_of(images, image.name);
     if (!fs::exists(file)) {
-      throw Error(fmt::format("{} is missing, expected an image of {}", file.string(),
-                              (folder / "images.txt").string()));
+      throw Error(
+          fmt::format("{} is missing, expected an image of {}", file.string(), model.string()));
     }
     result.push_back({.file = file,
                       .position = {},
@@ -149,9 +169,18 @@ std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::str
     throw UsageError("--poses is given without --images, expected both");
   }
   if (fs::is_directory(poses)) {
-    return images_of_colmap(poses, images, intrinsics);
+    require_folder(images, intrinsics);
+    return images_of_model(read_colmap_model(poses), images, poses / "images.txt");
   }
   const std::string text = read_file_text(poses);
+  if (is_nerf_transforms(text)) {
+    require_folder(images, intrinsics);
+    const auto size_of = [&](const std::string& name) {
+      const Photograph photograph = read_photograph(file_of(images, name));
+      return ImageSize{photograph.width(), photograph.height()};
+    };
+    return images_of_model(parse_nerf_transforms(text, poses.string(), size_of), images, poses);
+  }
   const std::vector<fs::path> files = files_of(images);
   const bool is_opencv = has_opencv_poses(text);
   if (!is_opencv && intrinsics.empty()) {
@@ -169,8 +198,12 @@ std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::str
   if (is_opencv) {
     return in_order(files, camera, parse_opencv_poses(text, poses.string()), poses);
   }
-  return images_of_trajectory(parse_trajectory(text, poses.string()), poses, files, camera,
-                              remarks);
+  const Trajectory trajectory = parse_trajectory(text, poses.string());
+  if (trajectory.is_of_body) {
+    remarks.push_back(fmt::format(
+        "{}: the poses are those of the body (IMU), taken as those of the camera", poses.string()));
+  }
+  return images_of_trajectory(trajectory, poses, files, camera, remarks);
 }
 
 }  // namespace vantage::apps

@@ -91,7 +91,8 @@ void add_scene_images_settings(Settings& settings, SceneImagesInput& input) {
   settings.input_path(
       "poses", input.poses, "PATH",
       "Poses of hand-held cameras: a folder with a COLMAP model as text, whose images are in "
-      "--images; a TUM or KITTI trajectory; OpenCV's YAML or XML with extrinsic_parameters");
+      "--images; transforms.json of NeRF tools, likewise; a TUM, KITTI or EuRoC trajectory; "
+      "OpenCV's YAML or XML with extrinsic_parameters");
   settings.input_path(
       "intrinsics", input.intrinsics, "FILE",
       "Camera of a trajectory: OpenCV's YAML or XML, COLMAP's cameras.txt, KITTI's "

@@ -197,7 +197,17 @@ void prepare_pairs(const SequenceJob& job, const std::optional<StereoCalibration
   }
   session.rectify(first, execution);
   if (!job.poses.empty()) {
-    session.poses.emplace(read_trajectory(job.poses), job.poses);
+    Trajectory trajectory = read_trajectory(job.poses);
+    const bool knows_body = calibration && calibration->left_from_body;
+    if (trajectory.is_of_body && knows_body) {
+      trajectory = trajectory.of_camera(*calibration->left_from_body);
+    } else if (trajectory.is_of_body) {
+      session.poses_note = fmt::format(
+          "{}: the poses are those of the body (IMU), taken as those of the left camera: no "
+          "calibration says where it is on the body (T_BS)",
+          job.poses);
+    }
+    session.poses.emplace(std::move(trajectory), job.poses);
     check_number_of_poses(job, first, session);
   }
   if (!calibration && job.rig.focal_length_px && is_metric) {

@@ -8,6 +8,7 @@
 
 #include "engine/image/side.h"
 #include "engine/rectification/camera.h"
+#include "engine/rectification/camera_pose.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/remark.h"
 
@@ -51,7 +52,9 @@ struct StereoCalibration {
   bool has_other_cameras = false;      ///< the file has both pairs of KITTI's
   std::string format = "calibration";  ///< for messages: "KITTI, cameras 0 and 1"
   std::string file = {};               ///< for messages: source file, if any
-  std::vector<Remark> remarks = {};    ///< what was assumed when it was read or scaled
+  /// The body that carries the cameras (IMU), in the left camera's frame, if the file tells.
+  std::optional<CameraPose> left_from_body = std::nullopt;
+  std::vector<Remark> remarks = {};  ///< what was assumed when it was read or scaled
 
   /// Distance of the cameras, in the calibration's unit.
   [[nodiscard]] double baseline() const { return translation.norm(); }
@@ -75,8 +78,8 @@ struct StereoCalibration {
 
 /// What a file does not tell, or not always.
 struct CalibrationChoice {
-  std::optional<KittiCameras> kitti_cameras;  ///< of a file of KITTI; empty: the grey ones
-  std::optional<LensKind> lens;               ///< of four coefficients whose kind no key names
+  std::optional<KittiCameras> kitti_cameras = {};  ///< of a file of KITTI; empty: the grey ones
+  std::optional<LensKind> lens = {};               ///< of four coefficients whose kind no key names
 };
 
 /// The files that the name of a calibration means: itself; or two, separated by a comma, unless

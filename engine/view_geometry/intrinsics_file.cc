@@ -11,8 +11,8 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/text_lines.h"
 #include "engine/rectification/calibration/camera_reading.h"
+#include "engine/rectification/calibration/posed_images.h"
 #include "engine/rectification/rotations.h"
-#include "engine/view_geometry/colmap_model.h"
 
 namespace vantage {
 namespace {

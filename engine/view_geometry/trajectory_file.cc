@@ -8,19 +8,27 @@
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/text_lines.h"
+#include "engine/view_geometry/nerf_transforms.h"
 
 namespace vantage {
 namespace {
 
 constexpr std::size_t kTumNumbers = 8;
+constexpr std::size_t kEurocNumbers = 17;
+constexpr double kFirstNanoseconds = 1e14;  // as seconds, 3 million years
 constexpr std::size_t kKittiNumbers = 12;
 constexpr std::size_t kWholeMatrixNumbers = 16;
 constexpr double kFarthest = 1e9;  // points of world coordinates are floats
 
-CameraPose pose_of_tum(const std::vector<double>& numbers, const TextLines& lines) {
-  const auto rotation = rotation_of_quaternion({numbers[7], numbers[4], numbers[5], numbers[6]});
+/// `w_at`: where the quaternion's w is among the numbers.
+CameraPose pose_of_tum(const std::vector<double>& numbers, std::size_t w_at,
+                       const TextLines& lines) {
+  const std::size_t x_at = w_at == 4 ? 5 : 4;
+  const auto rotation =
+      rotation_of_quaternion({numbers[w_at], numbers[x_at], numbers[x_at + 1], numbers[x_at + 2]});
   if (!rotation) {
-    lines.fail("the quaternion does not have length 1, expected time tx ty tz qx qy qz qw");
+    lines.fail(fmt::format("the quaternion does not have length 1, expected time tx ty tz {}",
+                           w_at == 4 ? "qw qx qy qz" : "qx qy qz qw"));
   }
   return CameraPose::from_camera_to_world(*rotation, {numbers[1], numbers[2], numbers[3]});
 }
@@ -43,7 +51,25 @@ CameraPose pose_of_kitti(const std::vector<double>& numbers, const TextLines& li
 
 }  // namespace
 
+Trajectory Trajectory::of_camera(const CameraPose& camera_from_body) const {
+  Trajectory result = *this;
+  result.is_of_body = false;
+  for (CameraPose& pose : result.poses) {
+    pose = {
+        .rotation = camera_from_body.rotation * pose.rotation,
+        .translation = camera_from_body.rotation * pose.translation + camera_from_body.translation};
+  }
+  return result;
+}
+
 Trajectory parse_trajectory(std::string_view text, const std::string& file) {
+  if (is_nerf_transforms(text)) {
+    Trajectory trajectory{.format = "NeRF", .poses = {}, .times_s = {}};
+    for (const PosedImage& image : parse_nerf_transforms(text, file)) {
+      trajectory.poses.push_back(image.pose);
+    }
+    return trajectory;
+  }
   TextLines lines(text, file);
   Trajectory trajectory;
   std::size_t expected = 0;
@@ -51,8 +77,9 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file) {
   while (const auto line = lines.next_with_words()) {
     const std::vector<std::string_view> words = words_of(*line);
     if (expected == 0 && words.size() != kTumNumbers && words.size() != kKittiNumbers &&
-        words.size() != kWholeMatrixNumbers) {
-      lines.fail(fmt::format("holds {} values, expected 8 (TUM) or 12 (KITTI)", words.size()));
+        words.size() != kWholeMatrixNumbers && words.size() != kEurocNumbers) {
+      lines.fail(
+          fmt::format("holds {} values, expected 8 (TUM), 12 (KITTI) or 17 (EuRoC)", words.size()));
     }
     if (expected != 0 && words.size() != expected) {
       lines.fail(
@@ -63,9 +90,13 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file) {
     for (const std::string_view word : words) {
       numbers.push_back(lines.number(word, fmt::format("value {}", numbers.size() + 1)));
     }
-    const bool is_tum = expected == kTumNumbers;
-    trajectory.format = is_tum ? "TUM" : "KITTI";
-    trajectory.poses.push_back(is_tum ? pose_of_tum(numbers, lines)
+    const bool has_nanoseconds = numbers[0] >= kFirstNanoseconds;
+    trajectory.is_of_body =
+        expected == kEurocNumbers ||
+        (expected == kTumNumbers && has_nanoseconds && line->find(',') != std::string_view::npos);
+    const bool is_tum = trajectory.is_of_body || expected == kTumNumbers;
+    trajectory.format = trajectory.is_of_body ? "EuRoC" : is_tum ? "TUM" : "KITTI";
+    trajectory.poses.push_back(is_tum ? pose_of_tum(numbers, trajectory.is_of_body ? 4 : 7, lines)
                                       : pose_of_kitti(numbers, lines));
     if (const double farthest = trajectory.poses.back().centre().cwiseAbs().maxCoeff();
         !(farthest <= kFarthest)) {
@@ -73,12 +104,12 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file) {
                              farthest, kFarthest));
     }
     if (is_tum) {
-      trajectory.times_s.push_back(numbers[0]);
+      trajectory.times_s.push_back(has_nanoseconds ? numbers[0] * 1e-9 : numbers[0]);
     }
   }
   if (trajectory.poses.empty()) {
-    throw Error(
-        fmt::format("{}: holds no poses, expected lines of 8 (TUM) or 12 (KITTI) numbers", file));
+    throw Error(fmt::format(
+        "{}: holds no poses, expected lines of 8 (TUM), 12 (KITTI) or 17 (EuRoC) numbers", file));
   }
   return trajectory;
 }

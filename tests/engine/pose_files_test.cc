@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "engine/io/files/text_lines.h"
+#include "engine/rectification/calibration/posed_images.h"
 #include "engine/view_geometry/colmap_model.h"
 #include "engine/view_geometry/intrinsics_file.h"
 #include "engine/view_geometry/trajectory_file.h"
@@ -101,7 +102,7 @@ TEST(ColmapModel, SaysWhatIsWrongWithCameras) {
               HasSubstr("line 2: camera 1 is given twice"));
 }
 
-std::vector<ColmapImage> images_in(const std::string& text) {
+std::vector<PosedImage> images_in(const std::string& text) {
   return parse_colmap_images(text, "images.txt", parse_colmap_cameras(kCameras, "cameras.txt"));
 }
 
@@ -110,7 +111,7 @@ TEST(ColmapModel, ImagesHoldWorldToCameraAndLinesOfPointsAreSkipped) {
   const Eigen::Vector3d t = -rotation * Eigen::Vector3d(1, 2, 3);
   const std::string pose = "0.70710678118 0 -0.70710678118 0 " + std::to_string(t.x()) + " " +
                            std::to_string(t.y()) + " " + std::to_string(t.z());
-  const std::vector<ColmapImage> images =
+  const std::vector<PosedImage> images =
       images_in("# Image list\n7 " + pose + " 3 b.png\n1.5 2.5 -1 3 4 17\n8 " + pose +
                 " 1 a folder/a.png\n\n9 1 0 0 0 0 0 0 1 c.png\n");
   ASSERT_EQ(images.size(), 3U);

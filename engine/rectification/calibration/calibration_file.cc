@@ -99,14 +99,29 @@ std::optional<std::pair<fs::path, bool>> file_of_other_camera(const fs::path& fi
   return std::nullopt;
 }
 
+/// The folder of a COLMAP model that is named, or whose cameras.txt is; else empty.
+fs::path folder_of_model(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored)    ? path
+         : path.filename() == "cameras.txt" ? path.parent_path() / ""
+                                            : fs::path();
+}
+
+StereoCalibration read_files(const fs::path& path, CameraChoice cameras,
+                             const CalibrationChoice& choice) {
+  const std::string name = path.string();
+  if (const fs::path model = folder_of_model(path); !model.empty()) {
+    return from_posed_images(read_colmap_model(model), name);
+  }
+  const std::vector<fs::path> files = calibration_files(path);
+  return files.size() == 1 ? parse(text_of(read_file_bytes(files[0])), cameras, choice, name)
+                           : parse_two(files, cameras, choice, name);
+}
+
 StereoCalibration read_calibration(const fs::path& path, CameraChoice cameras,
                                    const CalibrationChoice& choice) {
-  const std::vector<fs::path> files = calibration_files(path);
-  const std::vector<std::uint8_t> bytes = read_file_bytes(files[0]);
   try {
-    StereoCalibration calibration = files.size() == 1
-                                        ? parse(text_of(bytes), cameras, choice, path.string())
-                                        : parse_two(files, cameras, choice, path.string());
+    StereoCalibration calibration = read_files(path, cameras, choice);
     if (choice.kitti_cameras && !calibration.kitti_cameras) {
       throw Error(fmt::format("has format {}, expected KITTI: only its cameras are selected",
                               calibration.format));
@@ -115,7 +130,9 @@ StereoCalibration read_calibration(const fs::path& path, CameraChoice cameras,
     calibration.file = path.string();
     return calibration;
   } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path.string(), error.what()));
+    const std::string what = error.what();
+    throw what.starts_with("cannot read") ? error
+                                          : Error(fmt::format("{}: {}", path.string(), what));
   }
 }
 
@@ -125,6 +142,9 @@ std::vector<fs::path> calibration_files(const fs::path& name) {
   const std::string text = name.string();
   const std::size_t comma = text.find(',');
   std::error_code ignored;
+  if (const fs::path model = folder_of_model(name); !model.empty()) {
+    return {model / "cameras.txt", model / "images.txt"};
+  }
   if (!fs::exists(name, ignored)) {
     return comma == std::string::npos
                ? std::vector{name}

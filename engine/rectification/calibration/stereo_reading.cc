@@ -125,6 +125,7 @@ StereoCalibration calibration_of(StereoReading pair, const CalibrationChoice& ch
   calibration.right = pair.cameras[1].camera();
   calibration.rotation = pair.relative->rotation;
   calibration.translation = pair.relative->translation;
+  calibration.left_from_body = pair.cameras[0].from_body;
   const auto& [left_size, right_size] = std::pair(pair.cameras[0].size, pair.cameras[1].size);
   if (left_size && right_size &&
       (left_size->width_px != right_size->width_px ||
@@ -280,6 +281,27 @@ StereoCalibration from_right_camera(const CalibrationNames& names, CameraChoice 
   calibration.image_size = right.size;
   calibration.format = "ROS, right camera";
   return calibration;
+}
+
+StereoCalibration from_posed_images(const std::vector<PosedImage>& images,
+                                    const std::string& file) {
+  if (images.size() != 2) {
+    throw Error(fmt::format("it has {} images, expected the two of a pair", images.size()));
+  }
+  StereoReading pair{.cameras = {},
+                     .relative = relative_pose(images[0].pose, images[1].pose),
+                     .metres_per_unit = {},
+                     .format = "COLMAP",
+                     .may_be_swapped = true};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const SizedCamera& sized = images[i].camera;
+    CameraReading& camera = pair.cameras[i];
+    camera.matrix = sized.camera.matrix;
+    camera.distortion = sized.camera.distortion;
+    camera.lens = sized.camera.lens;
+    camera.size = sized.size;
+  }
+  return calibration_of(pair, {}, file);
 }
 
 }  // namespace vantage

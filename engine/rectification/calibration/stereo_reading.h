@@ -2,8 +2,10 @@
 
 #include <array>
 #include <string>
+#include <vector>
 
 #include "engine/rectification/calibration/camera_reading.h"
+#include "engine/rectification/calibration/posed_images.h"
 
 namespace vantage {
 
@@ -26,5 +28,8 @@ StereoCalibration from_two_cameras(const std::array<CalibrationNames, 2>& names,
                                    const std::string& file);
 /// Of the file of the right camera alone: its projection tells all of a rectified pair.
 StereoCalibration from_right_camera(const CalibrationNames& names, CameraChoice cameras);
+
+/// Of a model with two images. The one to the left is the left one; the unit is not known.
+StereoCalibration from_posed_images(const std::vector<PosedImage>& images, const std::string& file);
 
 }  // namespace vantage
