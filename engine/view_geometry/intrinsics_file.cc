@@ -135,7 +135,7 @@ SizedCamera camera_of_entries(const CalibrationNames& names, const std::string& 
       !unknown.empty() && reading.distortion_name.empty()) {
     throw Error(
         fmt::format("{} looks like distortion, but is not a name that is known, expected {}",
-                    unknown[0], CalibrationNames::taken(CalibrationValue::kDistortion)));
+                    unknown[0], CalibrationNames::taken(CalibrationValue::kDistortion, "")));
   }
   choose_lenses({&reading, 1}, choice.lens, file, sized.remarks);
   sized.camera = reading.camera();

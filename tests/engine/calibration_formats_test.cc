@@ -278,8 +278,7 @@ TEST_F(CalibrationFormats, OrbSlamSettings) {
     projection.leftCols<3>() = rectified.matrix;
     projection(0, 3) = tx;
     const std::string prefix = name;
-    return prefix + ".height: 72\n" + prefix + ".width: 96\n" +
-           opencv(prefix + ".K", lens.matrix) +
+    return prefix + ".height: 72\n" + prefix + ".width: 96\n" + opencv(prefix + ".K", lens.matrix) +
            opencv(prefix + ".D", Eigen::Map<const Eigen::RowVectorXd>(lens.distortion.data(), 4)) +
            opencv(prefix + ".R", rectified.rotation) + opencv(prefix + ".P", projection);
   };
@@ -308,6 +307,38 @@ TEST_F(CalibrationFormats, OrbSlamSettings) {
                         list(lens->distortion), list(of->rotation));
   }
   expect_depths(read_stereo_calibration(write("open.yaml", open)), rig);
+}
+
+/// COLMAP's model of two images, and its fisheye lenses.
+TEST_F(CalibrationFormats, ColmapPairs) {
+  StereoCalibration rig = rig_of(4);
+  const auto camera = [](int number, const Camera& lens) {
+    const Eigen::Matrix3d& k = lens.matrix;
+    return fmt::format("{} {} 96 72 {} {} {} {} {}\n", number,
+                       lens.lens == LensKind::kFisheye ? "OPENCV_FISHEYE" : "OPENCV", k(0, 0),
+                       k(1, 1), k(0, 2) + 0.5, k(1, 2) + 0.5, fmt::join(lens.distortion, " "));
+  };
+  // The left camera stands somewhere in the world.
+  const CameraPose left{.rotation = rotation_by({0.3, 1, -0.2}), .translation = {0.1, 0.2, 0.3}};
+  const CameraPose right{.rotation = rig.rotation * left.rotation,
+                         .translation = rig.rotation * left.translation + rig.translation};
+  const auto image = [](int camera_number, const char* name, const CameraPose& pose) {
+    const Eigen::Quaterniond q(pose.rotation);
+    const Eigen::Vector3d& t = pose.translation;
+    return fmt::format("{} {} {} {} {} {} {} {} {} {}\n\n", camera_number, q.w(), q.x(), q.y(),
+                       q.z(), t.x(), t.y(), t.z(), camera_number, name);
+  };
+  write("images.txt", image(1, "b.png", left) + image(2, "a.png", right));
+  expect_depths(
+      read_stereo_calibration(write("cameras.txt", camera(1, rig.left) + camera(2, rig.right))),
+      rig);
+  expect_depths(read_stereo_calibration(folder_.path()), rig);
+  rig.left.lens = LensKind::kFisheye;
+  write("cameras.txt", camera(1, rig.left) + camera(2, rig.right));
+  const StereoCalibration read = read_stereo_calibration(folder_.path());
+  EXPECT_EQ(read.left.lens, LensKind::kFisheye);
+  EXPECT_EQ(read.right.lens, LensKind::kStandard);
+  EXPECT_EQ(read.left.distortion, rig.left.distortion);
 }
 
 TEST_F(CalibrationFormats, OtherNumbersThanKittis) {
@@ -341,7 +372,7 @@ TEST_F(CalibrationFormats, DistortionIsNeverLeftOut) {
   const std::string none = error_of(
       [&] { read_stereo_calibration(write("c.yml", "kamera: 1\n" + opencv("R", rig.rotation))); });
   for (const char* part :
-       {"it has R, kamera;", "cameraMatrix, mtx", "distCoeffs", "left and right"}) {
+       {"it has R, kamera;", "cameraMatrix1, mtx1", "distCoeffs1", "left and right"}) {
     EXPECT_THAT(none, HasSubstr(part));
   }
 }

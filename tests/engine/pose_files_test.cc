@@ -7,6 +7,7 @@
 #include "engine/rectification/calibration/posed_images.h"
 #include "engine/view_geometry/colmap_model.h"
 #include "engine/view_geometry/intrinsics_file.h"
+#include "engine/view_geometry/nerf_transforms.h"
 #include "engine/view_geometry/trajectory_file.h"
 #include "tests/engine/engine_test.h"
 
@@ -92,8 +93,8 @@ TEST(ColmapModel, SaysWhatIsWrongWithCameras) {
   EXPECT_THAT(problem_of_cameras("1 PINHOLE 640\n"), HasSubstr("cameras.txt line 1: holds 3"));
   EXPECT_THAT(problem_of_cameras("1 PINHOLE 64 48 50 51 32\n"),
               HasSubstr("PINHOLE has 3 parameters, expected 4"));
-  EXPECT_THAT(problem_of_cameras("1 OPENCV_FISHEYE 64 48 1 1 1 1 0 0 0 0\n"),
-              HasSubstr("'OPENCV_FISHEYE', expected SIMPLE_PINHOLE"));
+  EXPECT_THAT(problem_of_cameras("1 THIN_PRISM_FISHEYE 64 48 1 1 1 1 0 0 0 0\n"),
+              HasSubstr("'THIN_PRISM_FISHEYE', expected SIMPLE_PINHOLE"));
   EXPECT_THAT(problem_of_cameras("1 PINHOLE 64 48 -50 51 32 24\n"),
               HasSubstr("line 1: the camera 1's fx is -50"));
   EXPECT_THAT(problem_of_cameras("x PINHOLE 64 48 50 51 32 24\n"), HasSubstr("CAMERA_ID is 'x'"));
@@ -203,13 +204,13 @@ TEST(IntrinsicsFile, SaysWhatIsWrong) {
   const auto problem = [](const std::string& text) {
     return error_of([&] { parse_intrinsics(text, "camera.yml"); });
   };
-  EXPECT_THAT(problem("nothing\n"), HasSubstr("camera.yml: holds no camera_matrix"));
-  EXPECT_THAT(problem("K: [1, 2]\n"), HasSubstr("camera_matrix has 2 values, expected 9"));
+  EXPECT_THAT(problem("nothing\n"),
+              HasSubstr("camera.yml: there is no camera matrix: it has no names"));
+  EXPECT_THAT(problem("K: [1, 2]\n"), HasSubstr("K has 2 values, expected a 3x3 matrix"));
   EXPECT_THAT(problem("-500 510 320 240\n"), HasSubstr("camera.yml: the camera's fx is -500"));
   EXPECT_THAT(problem("1 PINHOLE 4 4 1 1 1 1\n2 PINHOLE 4 4 1 1 1 1\n"),
               HasSubstr("holds 2 cameras, expected one"));
-  EXPECT_THAT(problem("distortion_model: equidistant\nK: [9,0,1,0,9,1,0,0,1]\n"),
-              HasSubstr("fisheye"));
+  EXPECT_THAT(problem("distortion_model: omni\nK: [9,0,1,0,9,1,0,0,1]\n"), HasSubstr("omni"));
 }
 
 TEST(IntrinsicsFile, OpenCvPosesAreRotationVectors) {
@@ -236,6 +237,72 @@ TEST(CameraPose, RelativePosesBringPointsFromOneCameraToTheOther) {
     return Eigen::Vector3d(pose.rotation * point + pose.translation);
   };
   EXPECT_LT((relative.rotation * seen(first) + relative.translation - seen(second)).norm(), 1e-12);
+}
+
+/// One pose as each format writes it: a camera at (1, 2, 3) that looks along the world's X.
+TEST(TrajectoryFile, FormatsAgree) {
+  // Columns: the camera's right, down and forward in the world, whose Z is up.
+  Eigen::Matrix3d axes;
+  axes << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  const Eigen::Vector3d centre(1, 2, 3);
+  const Eigen::Quaterniond q(axes);
+  const std::string tum = fmt::format("0.5 1 2 3 {} {} {} {}\n", q.x(), q.y(), q.z(), q.w());
+  const std::string body =
+      fmt::format("1403636579763555584,1,2,3,{},{},{},{}", q.w(), q.x(), q.y(), q.z());
+  const std::string euroc = "#timestamp, p_RS_R_x [m], ...\n" + body + ",0,0,0,0,0,0,0,0,0\n";
+  Eigen::Matrix3d opengl = axes;  // right, up, back
+  opengl.rightCols<2>() *= -1;
+  std::string rows;
+  for (int row = 0; row < 3; ++row) {
+    rows += fmt::format("[{}, {}, {}, {}], ", opengl(row, 0), opengl(row, 1), opengl(row, 2),
+                        centre[row]);
+  }
+  const std::string frame =
+      R"({"file_path": "images/b", "transform_matrix": [)" + rows + R"([0, 0, 0, 1]]})";
+  const std::string nerf = R"({"camera_model": "OPENCV_FISHEYE", "fl_x": 50, "fl_y": 51, "cx": 32,
+      "cy": 24, "w": 64, "h": 48, "k1": 0.1, "k4": 0.01, "frames": [)" +
+                           frame + "]}";
+  for (const std::string& text : {tum, body + "\n", euroc, nerf}) {
+    const Trajectory read = parse_trajectory(text, "poses");
+    ASSERT_EQ(read.poses.size(), 1U);
+    EXPECT_TRUE(read.poses[0].rotation.isApprox(axes.transpose(), 1e-9)) << text;
+    EXPECT_TRUE(read.poses[0].centre().isApprox(centre, 1e-9)) << text;
+    EXPECT_EQ(read.is_of_body, read.format == "EuRoC");
+    if (read.is_of_body) {
+      EXPECT_NEAR(read.times_s[0], 1403636579.763555584, 1e-6);
+    }
+  }
+  // A camera on the body, 1 to its left and turned: it is where both poses say.
+  CameraPose on_body{.rotation = axes, .translation = {1, 0, 0}};
+  const CameraPose of_camera = parse_trajectory(euroc, "poses").of_camera(on_body).poses[0];
+  const Eigen::Vector3d point(4, 5, 6);
+  const Eigen::Vector3d of_body = axes.transpose() * (point - centre);
+  EXPECT_TRUE((of_camera.rotation * point + of_camera.translation)
+                  .isApprox(axes * of_body + Eigen::Vector3d(1, 0, 0), 1e-9));
+
+  const SizedCamera camera =
+      parse_nerf_transforms(nerf, "t.json", [](const std::string&) { return ImageSize(); })
+          .at(0)
+          .camera;
+  EXPECT_EQ(camera.camera.lens, LensKind::kFisheye);
+  EXPECT_EQ(camera.camera.distortion, (std::vector<double>{0.1, 0, 0, 0.01}));
+  EXPECT_EQ(camera.camera.matrix(0, 2), 31.5);
+  // The synthetic scenes have a field of view alone.
+  const std::string blender =
+      R"({"camera_angle_x": 1.5707963267948966, "frames": [)" + frame + "]}";
+  const Camera narrow = parse_nerf_transforms(blender, "t.json",
+                                              [](const std::string& name) {
+                                                EXPECT_EQ(name, "images/b");
+                                                return ImageSize{100, 80};
+                                              })
+                            .at(0)
+                            .camera.camera;
+  EXPECT_NEAR(narrow.matrix(1, 1), 50, 1e-9);
+  EXPECT_EQ(narrow.matrix(1, 2), 39.5);
+  for (const char* text : {"{}", R"({"frames": [{}]})", R"({"frames": [{"file_path": "a"}]})",
+                           R"({"frames": [{"file_path": "a", "transform_matrix": [[1]]}]})"}) {
+    EXPECT_THAT(error_of([&] { parse_trajectory(text, "t.json"); }), HasSubstr("t.json"));
+  }
 }
 
 }  // namespace vantage::pose_files_test

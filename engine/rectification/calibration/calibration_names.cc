@@ -178,20 +178,19 @@ bool CalibrationNames::is_label(std::string_view name) {
 template <typename Fits>
 CalibrationNames::Found CalibrationNames::find_named(std::string_view name, CameraLabel camera,
                                                      const Fits& fits) const {
-  static const std::vector<std::string_view> kNoLabel = {""};
-  const auto& labels =
-      camera == CameraLabel::kNone ? kNoLabel : (*labels_)[camera == CameraLabel::kFirst ? 0 : 1];
+  std::vector<std::string_view> labels = {""};
+  if (camera != CameraLabel::kNone) {
+    const std::size_t i = camera == CameraLabel::kFirst ? 0 : 1;
+    labels = (*labels_)[i];
+    labels.insert(labels.end(), kSides[i].begin(), kSides[i].end());  // K1, but D_left
+  }
   const std::string spelling = spelling_of(name);
   for (const std::string_view label : labels) {
     for (const std::string& whole :
          {spelling + std::string(label), std::string(label) + spelling}) {
       const auto found = by_spelling_.find(whole);
-      if (found == by_spelling_.end()) {
-        continue;
-      }
-      const CalibrationEntry& entry = entries_.find(found->second)->second;
-      if (fits(entry)) {
-        return {found->second, &entry};
+      if (found != by_spelling_.end() && fits(entries_.at(found->second))) {
+        return {found->second, &entries_.at(found->second)};
       }
     }
   }
@@ -261,8 +260,12 @@ std::vector<std::string> CalibrationNames::unknown_distortions() const {
   return unknown;
 }
 
-std::string CalibrationNames::taken(Value value) {
-  return fmt::format("{}", fmt::join(names_of(value).names, ", "));
+std::string CalibrationNames::taken(Value value, std::string_view label) {
+  std::string text;
+  for (const std::string_view name : names_of(value).names) {
+    text += fmt::format("{}{}{}", text.empty() ? "" : ", ", name, label);
+  }
+  return text;
 }
 
 std::string CalibrationNames::found_and_taken() const {
@@ -274,11 +277,11 @@ std::string CalibrationNames::found_and_taken() const {
   const bool has_more = found.size() > kShown;
   found.resize(std::min(found.size(), kShown));
   return fmt::format(
-      "it has {}{}; expected {} and {}, with 1 and 2, left and right, L and R, or cam0 and cam1 "
-      "before or after, and {}, {} (case, _ and . do not matter)",
+      "it has {}{}; expected one of {}, likewise {}; {} and {} (with 1 and 2, left and "
+      "right, L and R, or cam0 and cam1, before or after; case, _ and . do not matter)",
       found.empty() ? "no names" : fmt::format("{}", fmt::join(found, ", ")),
-      has_more ? ", ..." : "", taken(Value::kMatrix), taken(Value::kDistortion),
-      taken(Value::kRotation), taken(Value::kTranslation));
+      has_more ? ", ..." : "", taken(Value::kMatrix, "1"), taken(Value::kDistortion, "1"),
+      taken(Value::kRotation, ""), taken(Value::kTranslation, ""));
 }
 
 }  // namespace vantage

@@ -76,8 +76,8 @@ class CalibrationNames {
   [[nodiscard]] bool counts_from_0() const { return labels_ == &kFromZero; }
   /// Names of the entries, and the names that are taken, for messages: "it has …; expected …".
   [[nodiscard]] std::string found_and_taken() const;
-  /// The names of a value, for messages.
-  [[nodiscard]] static std::string taken(CalibrationValue value);
+  /// The names of a value, with a camera's label, for messages.
+  [[nodiscard]] static std::string taken(CalibrationValue value, std::string_view label);
   [[nodiscard]] const CalibrationEntries& entries() const { return entries_; }
 
  private:

@@ -185,7 +185,7 @@ void look_at_unknown(const CalibrationNames& names, const std::array<CameraReadi
     throw Error(fmt::format(
         "{} looks like distortion, but is not a name that is known, expected {}, with 1 and 2, "
         "left and right, L and R, or cam0 and cam1 before or after",
-        unknown[0], CalibrationNames::taken(Value::kDistortion)));
+        unknown[0], CalibrationNames::taken(Value::kDistortion, "1")));
   }
   remarks.push_back({.kind = Remark::Kind::kWarning,
                      .subject = "calibration",
