@@ -184,7 +184,6 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
   }
   set_baseline(job, rectification.calibration);
   rectification.calibration = rectification.calibration.for_images(size.width_px, size.height_px);
-  tell_remarks(rectification.calibration.remarks, job.common, report);
   const auto rectifier_of_all = [&] {
     return report.timed_compute("maps", [&] {
       return Rectifier(rectification.calibration, size.width_px, size.height_px, job.rectification);
@@ -193,6 +192,7 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
   // Errors of a calibration that was read already name its file.
   Rectifier rectifier =
       job.calibration.empty() ? about(inputs, rectifier_of_all) : rectifier_of_all();
+  tell_remarks(rectifier.pair().remarks, job.common, report);
   const std::vector<PointMatch> found =
       gather_matches(*pairs, sample, size, execution, report, [&](FramePair& one) {
         rectify_pair(rectifier, one, execution);
