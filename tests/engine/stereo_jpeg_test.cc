@@ -2,63 +2,20 @@
 
 #include "engine/image/orientation.h"
 #include "engine/io/files/atomic_file.h"
-#include "engine/io/files/checksum.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/sequence/pairs/pair_source.h"
 #include "tests/engine/engine_test.h"
+#include "tests/tagged_files.h"
 
 namespace vantage::stereo_jpeg_test {
 
 using Bytes = std::vector<std::uint8_t>;
-
-std::string big(std::uint32_t value, int bytes) {
-  std::string text;
-  for (int i = bytes - 1; i >= 0; --i) {
-    text.push_back(static_cast<char>(value >> (8 * i)));
-  }
-  return text;
-}
-
-/// EXIF data of one entry: Orientation.
-std::string exif(int orientation) {
-  return std::string("MM\0\x2A", 4) + big(8, 4) + big(1, 2) + big(274, 2) + big(3, 2) + big(1, 4) +
-         big(static_cast<std::uint32_t>(orientation), 2) + std::string(6, '\0');
-}
 
 /// A JPEG file of noise that is smooth enough for a lossy codec.
 std::string jpeg_of(const TemporaryFolder& folder, const Photograph& photograph) {
   write_photograph(folder / "one.jpg", photograph);
   const Bytes bytes = bytes_of(folder / "one.jpg");
   return {bytes.begin(), bytes.end()};
-}
-
-/// The file with another segment after its first marker.
-std::string with_segment(const std::string& jpeg, int marker, const std::string& content) {
-  return jpeg.substr(0, 2) + '\xFF' + static_cast<char>(marker) +
-         big(static_cast<std::uint32_t>(content.size() + 2), 2) + content + jpeg.substr(2);
-}
-
-/// An MPO: JPEG files one after the other, the first with an index of all.
-std::string mpo_of(const std::vector<std::string>& jpegs, const std::vector<std::uint32_t>& types) {
-  const auto index = [&](std::uint32_t first_size) {
-    std::string text("MPF\0MM\0\x2A", 8);
-    text += big(8, 4) + big(1, 2) + big(0xB002, 2) + big(7, 2) +
-            big(static_cast<std::uint32_t>(16 * jpegs.size()), 4) + big(26, 4) + big(0, 4);
-    std::uint32_t position = first_size;
-    for (std::size_t i = 0; i < jpegs.size(); ++i) {
-      const auto size = i == 0 ? first_size : static_cast<std::uint32_t>(jpegs[i].size());
-      // Offsets are from the byte after "MPF\0", which is byte 10 of the file.
-      text += big(types[i], 4) + big(size, 4) + big(i == 0 ? 0 : position - 10, 4) + big(0, 4);
-      position += i == 0 ? 0 : size;
-    }
-    return text;
-  };
-  const auto first_size = static_cast<std::uint32_t>(with_segment(jpegs[0], 0xE2, index(0)).size());
-  std::string file = with_segment(jpegs[0], 0xE2, index(first_size));
-  for (std::size_t i = 1; i < jpegs.size(); ++i) {
-    file += jpegs[i];
-  }
-  return file;
 }
 
 class StereoJpegs : public testing::Test {
@@ -170,11 +127,7 @@ TEST_F(StereoJpegs, PhotographsAreTurnedAsTheirExifSays) {
     put_text(folder_ / "t.jpg",
              with_segment(jpegs_[0], 0xE1, std::string("Exif\0\0", 6) + exif(tag)));
     expect_turned("t.jpg", images_[0]);
-    const std::string chunk = "eXIf" + exif(tag);
-    const Bytes checked(chunk.begin(), chunk.end());
-    put_text(folder_ / "t.png", png.substr(0, 33) +
-                                    big(static_cast<std::uint32_t>(chunk.size() - 4), 4) + chunk +
-                                    big(crc32_of(checked), 4) + png.substr(33));
+    put_text(folder_ / "t.png", with_exif_chunk(png, tag));
     expect_turned("t.png", photograph);
     // RIFF of an extended header (flag 8: EXIF), the picture, and the EXIF data.
     const std::string picture(lossless.begin() + 12, lossless.end());

@@ -103,7 +103,7 @@ StereoJpeg stereo_jpeg(const FileBytes& file) {
     stereo.packing = StereoPacking{.right_first = true};
     stereo.remark =
         "a JPS file says nothing of its halves: the left one is taken for the right image, as is "
-        "usual (`packing` sbsl for the other order)";
+        "usual (FILE#1 FILE#0, or `packing` sbsl of a run, for the other order)";
   }
   return stereo;
 }
