@@ -83,13 +83,14 @@ struct CalibrationChoice {
 };
 
 /// The files that the name of a calibration means: itself; or two, separated by a comma, unless
-/// there is a file of that name; or itself and the one of the other camera, where that lies beside
-/// it and the file is of one camera (left.yaml and right.yaml, cam0/sensor.yaml and
-/// cam1/sensor.yaml). A file that does not exist is among them.
+/// there is a file of that name (the second one may be in the folder of the first); or itself and
+/// the one of the other camera, where that lies beside it and the file is of one camera (left.yaml
+/// and right.yaml, cam0/sensor.yaml and cam1/sensor.yaml). A file that does not exist is among
+/// them.
 std::vector<std::filesystem::path> calibration_files(const std::filesystem::path& name);
 
-/// Reads a calibration; its content, not its name, decides the format. CONVENTIONS lists the
-/// formats: OpenCV's YAML, XML and JSON under many names (rectification/calibration/names), files
+/// Reads a calibration; its content, not its name, decides the format. The Guide lists them:
+/// OpenCV's YAML, XML and JSON under many names (rectification/calibration/names), files
 /// of ROS, Kalibr, EuRoC and ORB-SLAM, Middlebury and ETH3D, KITTI and DrivingStereo, COLMAP.
 /// `path` may name two files (calibration_files()). Cameras that a file numbers are put in order:
 /// the right one is to the right. Rectified if the cameras are equal up to cx, without distortion,

@@ -131,12 +131,7 @@ SizedCamera camera_of_entries(const CalibrationNames& names, const std::string& 
                     "COLMAP, or fx fy cx cy",
                     names.found_and_taken()));
   }
-  if (const auto unknown = names.unknown_distortions();
-      !unknown.empty() && reading.distortion_name.empty()) {
-    throw Error(
-        fmt::format("{} looks like distortion, but is not a name that is known, expected {}",
-                    unknown[0], CalibrationNames::taken(CalibrationValue::kDistortion, "")));
-  }
+  look_at_unknown_distortion(names, {&reading, 1}, file, sized.remarks);
   choose_lenses({&reading, 1}, choice.lens, file, sized.remarks);
   sized.camera = reading.camera();
   sized.size = reading.size.value_or(ImageSize());

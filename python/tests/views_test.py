@@ -1,5 +1,7 @@
 """Views, rectification, points, and OpenCV's interface."""
 
+import pickle
+
 import cv2
 import numpy as np
 import pytest
@@ -44,6 +46,28 @@ def test_view_of_a_camera(scene, pair, tmp_path):
     assert same(view, vantage.read_image(tmp_path / "view.png"))
     with pytest.raises(ValueError, match="calibrat"):
         vantage.synthesize(*pair, pose, **RANGE)
+
+
+def test_fisheye_lenses(tmp_path):
+    camera = np.array([[180.0, 0, 80], [0, 180, 60], [0, 0, 1]])
+    coefficients = np.array([[0.05], [-0.02], [0.01], [-0.003]])
+    path = str(tmp_path / "rig.json")
+    file = cv2.FileStorage(path, cv2.FILE_STORAGE_WRITE)
+    for name, matrix in [("K1", camera), ("D1", coefficients), ("K2", camera),
+                         ("D2", coefficients), ("R", np.eye(3)),
+                         ("T", np.array([[-0.1], [0], [0]]))]:
+        file.write(name, matrix)
+    file.release()
+    with pytest.raises(vantage.Error, match="D1 is 4x1 and no key says of which lens"):
+        vantage.Calibration.load(path)
+    loaded = vantage.Calibration.load(path, lens="fisheye")
+    made = vantage.Calibration(camera, coefficients, T=[-0.1, 0, 0], D2=coefficients,
+                               lens="fisheye")
+    for rig in [loaded, made, pickle.loads(pickle.dumps(made))]:
+        assert rig.lens == "fisheye" and rig.D1 == coefficients.ravel().tolist()
+    assert vantage.Calibration.load(path, lens="standard").lens == "standard"
+    with pytest.raises(ValueError, match="lens is 'wide', expected"):
+        vantage.Calibration.load(path, lens="wide")
 
 
 def test_cameras_of_kitti(tmp_path):

@@ -146,9 +146,12 @@ std::vector<fs::path> calibration_files(const fs::path& name) {
     return {model / "cameras.txt", model / "images.txt"};
   }
   if (!fs::exists(name, ignored)) {
-    return comma == std::string::npos
-               ? std::vector{name}
-               : std::vector<fs::path>{text.substr(0, comma), text.substr(comma + 1)};
+    if (comma == std::string::npos) {
+      return {name};
+    }
+    const fs::path first = text.substr(0, comma);
+    const fs::path second = text.substr(comma + 1);
+    return {first, fs::exists(second, ignored) ? second : first.parent_path() / second};
   }
   const auto other = file_of_other_camera(name);
   if (!other || !are_of_one_camera(CalibrationNames(entries_of_file(name))) ||

@@ -57,9 +57,8 @@ const std::vector<NamesOfValue>& names_of_values() {
         "kc"}},
       {Value::kLensModel,
        Shape::kAny,
-       {"StereoRectifier.model", "distortionModel", "distortionType", "lensModel", "cameraModel",
-        "Camera.type", "model"}},
-      {Value::kIsFisheye, Shape::kAny, {"fisheyeModel", "fisheye", "isFisheye", "useFisheye"}},
+       {"fisheyeModel", "fisheye", "isFisheye", "StereoRectifier.model", "distortionModel",
+        "distortionType", "lensModel", "cameraModel", "Camera.type", "model"}},
       {Value::kRectification,
        Shape::kSeveral,
        {"R", "rectificationMatrix", "rectification", "RRect", "rectR"}},
@@ -113,7 +112,7 @@ std::string spelling_of(std::string_view name) {
 
 /// Whether what is not of one camera is of both.
 bool may_be_shared(Value value) {
-  return value <= Value::kIsFisheye || (value >= Value::kImageSize && value <= Value::kCy);
+  return value <= Value::kLensModel || (value >= Value::kImageSize && value <= Value::kCy);
 }
 
 }  // namespace

@@ -14,8 +14,7 @@ namespace vantage {
 enum class CalibrationValue {
   kMatrix,         ///< K: 3×3, or fx fy cx cy
   kDistortion,     ///< D
-  kLensModel,      ///< the kind of D
-  kIsFisheye,      ///< the same as a switch
+  kLensModel,      ///< the kind of D: a word, or a switch of its name
   kRectification,  ///< rectified frame ← camera: R1 of OpenCV
   kProjection,     ///< 3×4, rectified pixel ← rectified frame: P1 of OpenCV
   kImageSize,      ///< width and height

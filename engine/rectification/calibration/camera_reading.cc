@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "engine/error.h"
@@ -36,47 +35,34 @@ std::string plain(std::string_view word) {
   return result;
 }
 
-constexpr std::array<std::string_view, 9> kFisheyes = {"fisheye",
-                                                       "equidistant",
-                                                       "kannalabrandt",
-                                                       "kannalabrandt4",
-                                                       "kannalabrandt8",
-                                                       "equi",
-                                                       "kb4",
-                                                       "opencvfisheye",
-                                                       "kb8"};
-constexpr std::array<std::string_view, 14> kOthers = {"omni",         "mei",
-                                                      "ds",           "eucm",
-                                                      "fov",          "unified",
-                                                      "doublesphere", "thinprismfisheye",
-                                                      "atan",         "ucm",
-                                                      "ftheta",       "fisheye62",
-                                                      "rational6",    "omnidirectional"};
-constexpr std::array<std::string_view, 9> kStandards = {
-    "plumbbob",     "radtan", "radialtangential", "rationalpolynomial",
-    "brownconrady", "none",   "opencv",           "rationalpolynomia",
-    "standard"};
+// Words between blanks.
+constexpr std::string_view kFisheyes =
+    " fisheye equidistant equi kannalabrandt kannalabrandt4 kannalabrandt8 kb4 kb8 opencvfisheye "
+    "true ";
+constexpr std::string_view kStandards =
+    " plumbbob radtan radialtangential rationalpolynomial brownconrady opencv standard none false ";
+constexpr std::string_view kOthers =
+    " omni omnidirectional mei ds doublesphere eucm ucm unified fov atan ftheta fisheye62 "
+    "thinprismfisheye ";
+
+bool holds(std::string_view words, std::string_view word) {
+  return words.find(fmt::format(" {} ", word)) != std::string_view::npos;
+}
 
 /// What the words of a lens model mean.
 void read_lens_model(const CalibrationNames& names, CameraLabel camera, CameraReading& reading) {
-  const CalibrationNames::Found is_fisheye = names.find(Value::kIsFisheye, camera);
-  if (is_fisheye.entry != nullptr) {
-    const std::vector<double>& values = is_fisheye.entry->values;
-    const bool is_on = values.empty() ? plain(is_fisheye.entry->word) == "true" : values[0] != 0;
-    reading.lens = is_on ? LensKind::kFisheye : LensKind::kStandard;
-    reading.lens_name = is_fisheye.name;
-    return;
-  }
   for (const CalibrationNames::Found& found : names.all(Value::kLensModel, camera)) {
-    const std::string word = plain(found.entry->word);
-    if (std::ranges::find(kOthers, word) != kOthers.end()) {
+    const std::vector<double>& number = found.entry->values;
+    const std::string word =
+        !number.empty() ? (number[0] != 0 ? "true" : "false") : plain(found.entry->word);
+    if (holds(kOthers, word)) {
       throw Error(fmt::format(
           "{} is the lens model {}, which is not supported, expected OpenCV's standard model "
           "(radtan, plumb_bob, rational_polynomial) or fisheye (equidistant)",
           quotable(found.name), quotable(found.entry->word)));
     }
-    const bool is_standard = std::ranges::find(kStandards, word) != kStandards.end();
-    if (is_standard || std::ranges::find(kFisheyes, word) != kFisheyes.end()) {
+    const bool is_standard = holds(kStandards, word);
+    if (is_standard || holds(kFisheyes, word)) {
       reading.lens = is_standard ? LensKind::kStandard : LensKind::kFisheye;
       reading.lens_name = found.name;
       return;
@@ -263,6 +249,23 @@ void choose_lenses(std::span<CameraReading> cameras, std::optional<LensKind> wan
     if (camera.lens == LensKind::kFisheye) {
       camera.distortion.resize(std::max<std::size_t>(camera.distortion.size(), 4));
     }
+  }
+}
+
+void look_at_unknown_distortion(const CalibrationNames& names,
+                                std::span<const CameraReading> cameras, const std::string& file,
+                                std::vector<Remark>& remarks) {
+  for (const std::string& unknown : names.unknown_distortions()) {
+    if (std::ranges::any_of(cameras, &std::string::empty, &CameraReading::distortion_name)) {
+      throw Error(fmt::format(
+          "{} looks like distortion, but is not a name that is known, expected one of {}, likewise "
+          "with 2, left and right, L and R, or cam0 and cam1, before or after",
+          unknown, CalibrationNames::taken(Value::kDistortion, "1")));
+    }
+    remarks.push_back({.kind = Remark::Kind::kWarning,
+                       .subject = "calibration",
+                       .text = fmt::format("{}: {} looks like distortion, and is not used: {} is",
+                                           file, unknown, cameras[0].distortion_name)});
   }
 }
 

@@ -41,6 +41,12 @@ CameraReading read_camera(const CalibrationNames& names, CameraLabel camera);
 void choose_lenses(std::span<CameraReading> cameras, std::optional<LensKind> wanted,
                    const std::string& file, std::vector<Remark>& remarks);
 
+/// Distortion is not left out because of its name: throws Error for entries that look like it where
+/// a camera has none, else warns of them in `remarks`.
+void look_at_unknown_distortion(const CalibrationNames& names,
+                                std::span<const CameraReading> cameras, const std::string& file,
+                                std::vector<Remark>& remarks);
+
 /// The numbers of an entry. Throws Error if it does not hold `rows` · `columns`.
 const std::vector<double>& values_of(const CalibrationNames::Found& found, int rows, int columns);
 Eigen::Matrix3d matrix_of(const CalibrationNames::Found& found);

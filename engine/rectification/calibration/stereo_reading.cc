@@ -174,34 +174,13 @@ void read_unit(const CalibrationNames& names, StereoCalibration& calibration) {
   }
 }
 
-/// Distortion is not left out because of its name.
-void look_at_unknown(const CalibrationNames& names, const std::array<CameraReading, 2>& cameras,
-                     const std::string& file, std::vector<Remark>& remarks) {
-  const std::vector<std::string> unknown = names.unknown_distortions();
-  if (unknown.empty()) {
-    return;
-  }
-  if (cameras[0].distortion_name.empty() || cameras[1].distortion_name.empty()) {
-    throw Error(fmt::format(
-        "{} looks like distortion, but is not a name that is known, expected {}, with 1 and 2, "
-        "left and right, L and R, or cam0 and cam1 before or after",
-        unknown[0], CalibrationNames::taken(Value::kDistortion, "1")));
-  }
-  remarks.push_back({.kind = Remark::Kind::kWarning,
-                     .subject = "calibration",
-                     .text = fmt::format("{}: {} looks like distortion, and is not used: {} is",
-                                         file, unknown[0], cameras[0].distortion_name)});
-}
-
 }  // namespace
 
 StereoCalibration from_names(const CalibrationNames& names, CameraChoice cameras,
                              const CalibrationChoice& choice, const std::string& file) {
-  StereoReading pair{.cameras = {read_camera(names, CameraLabel::kFirst),
-                                 read_camera(names, CameraLabel::kSecond)},
-                     .relative = {},
-                     .metres_per_unit = {},
-                     .format = {}};
+  StereoReading pair;
+  pair.cameras = {read_camera(names, CameraLabel::kFirst),
+                  read_camera(names, CameraLabel::kSecond)};
   const auto& [left, right] = pair.cameras;
   std::optional<StereoCalibration> calibration;
   if (cameras == CameraChoice::kRectified || (!left.matrix && !right.matrix)) {
@@ -219,7 +198,7 @@ StereoCalibration from_names(const CalibrationNames& names, CameraChoice cameras
           "file, or `calibration` INTRINSICS,EXTRINSICS");
     }
     calibration = calibration_of(pair, choice, file);
-    look_at_unknown(names, pair.cameras, file, calibration->remarks);
+    look_at_unknown_distortion(names, pair.cameras, file, calibration->remarks);
   }
   read_unit(names, *calibration);
   return *calibration;
@@ -238,12 +217,11 @@ bool are_of_one_camera(const CalibrationNames& names) {
 StereoCalibration from_two_cameras(const std::array<CalibrationNames, 2>& names,
                                    CameraChoice cameras, const CalibrationChoice& choice,
                                    const std::string& file) {
-  StereoReading pair{.cameras = {read_camera(names[0], CameraLabel::kNone),
-                                 read_camera(names[1], CameraLabel::kNone)},
-                     .relative = {},
-                     .metres_per_unit = 1,
-                     .format = {},
-                     .may_be_swapped = true};
+  StereoReading pair;
+  pair.cameras = {read_camera(names[0], CameraLabel::kNone),
+                  read_camera(names[1], CameraLabel::kNone)};
+  pair.metres_per_unit = 1;
+  pair.may_be_swapped = true;
   const bool has_pose = find_relative_pose(pair);
   if (cameras == CameraChoice::kRectified) {
     if (auto calibration = rectified_of(names[0], pair.cameras)) {
@@ -258,7 +236,7 @@ StereoCalibration from_two_cameras(const std::array<CalibrationNames, 2>& names,
   }
   StereoCalibration calibration = calibration_of(pair, choice, file);
   for (const CalibrationNames& of_one : names) {
-    look_at_unknown(of_one, pair.cameras, file, calibration.remarks);
+    look_at_unknown_distortion(of_one, pair.cameras, file, calibration.remarks);
   }
   return calibration;
 }
@@ -288,18 +266,16 @@ StereoCalibration from_posed_images(const std::vector<PosedImage>& images,
   if (images.size() != 2) {
     throw Error(fmt::format("it has {} images, expected the two of a pair", images.size()));
   }
-  StereoReading pair{.cameras = {},
-                     .relative = relative_pose(images[0].pose, images[1].pose),
-                     .metres_per_unit = {},
-                     .format = "COLMAP",
-                     .may_be_swapped = true};
+  StereoReading pair;
+  pair.relative = relative_pose(images[0].pose, images[1].pose);
+  pair.format = "COLMAP";
+  pair.may_be_swapped = true;
   for (std::size_t i = 0; i < 2; ++i) {
-    const SizedCamera& sized = images[i].camera;
-    CameraReading& camera = pair.cameras[i];
-    camera.matrix = sized.camera.matrix;
-    camera.distortion = sized.camera.distortion;
-    camera.lens = sized.camera.lens;
-    camera.size = sized.size;
+    const auto& [camera, size, remarks] = images[i].camera;
+    pair.cameras[i].matrix = camera.matrix;
+    pair.cameras[i].distortion = camera.distortion;
+    pair.cameras[i].lens = camera.lens;
+    pair.cameras[i].size = size;
   }
   return calibration_of(pair, {}, file);
 }
