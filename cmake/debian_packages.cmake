@@ -8,13 +8,14 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 
-# depends_of_late_libraries(VARIABLE): the packages of the libraries that are opened at run time
+# packages_of(VARIABLE LIBRARY...): the packages of libraries that are opened at run time
 # (engine/late_library.h), which dpkg-shlibdeps does not see.
-function(depends_of_late_libraries variable)
-  get_target_property(imgcodecs opencv_imgcodecs LOCATION)
-  get_target_property(video opencv_video LOCATION)
+function(packages_of variable)
   set(packages "")
-  foreach(library IN ITEMS ${imgcodecs} ${video} ${TIFF_LIBRARY} ${libav_codecs_LINK_LIBRARIES})
+  foreach(library IN LISTS ARGN)
+    if(TARGET ${library})
+      get_target_property(library ${library} LOCATION)
+    endif()
     file(REAL_PATH ${library} file)
     cmake_path(GET file FILENAME name)
     execute_process(COMMAND dpkg-query -S "*/${name}"
@@ -51,7 +52,9 @@ endif()
 configure_file(cmake/debian/changelog.in changelog @ONLY)
 execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
 
-depends_of_late_libraries(late_libraries)
+packages_of(late_libraries opencv_imgcodecs opencv_video ${TIFF_LIBRARY} ${libav_codecs_LINK_LIBRARIES})
+# Only boards with markers need it, and it brings a window system.
+packages_of(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS opencv_aruco)
 debian_package(program vantage graphics "${late_libraries}"
   "disparity maps and new views of stereo pairs and sequences"
   "Turns rectified stereo pairs, folders of pairs and stereo videos into

@@ -103,7 +103,7 @@ void open(const std::optional<StereoCalibration>& calibration, OpenSequence& ope
   SequenceOptions planned = job.sequence;
   planned.match.disparities = session.columns.widest_with(match.disparities);
   opened.in_flight =
-      plan_memory(planned, {job.in_flight, std::nullopt}, session.shape, first, execution.options())
+      plan_memory(planned, memory_request(job.in_flight), session.shape, first, execution.options())
           .in_flight;
   if (job.sequence.needs_shots()) {
     SurveyHooks hooks;

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "scheduler/control_groups.h"
+
 namespace vantage::scheduler {
 namespace {
 
@@ -163,7 +165,15 @@ Topology detect_topology() {
   if (hwloc_topology_is_thissystem(handle.get()) != 0) {
     restrict_to_affinity_mask(handle.get());
   }
-  return read(handle);
+  Topology topology = read(handle);
+  if (topology.system != nullptr) {
+    const SystemLimits limits = read_system_limits();
+    Machine& machine = topology.machine;
+    machine.hardware_threads = limits.threads_of(machine.hardware_threads);
+    // Not the sum of the nodes: virtual machines tell of less than there is.
+    machine.memory_bytes = limits.memory_bytes > 0 ? limits.memory_bytes : machine.memory_bytes;
+  }
+  return topology;
 }
 
 Topology synthetic_topology(const std::string& description) {

@@ -32,8 +32,9 @@ struct Topology {
   std::shared_ptr<hwloc_topology> system;
 };
 
-/// Queries hwloc, which obeys HWLOC_SYNTHETIC and HWLOC_XMLFILE: plans use such topologies, but no
-/// thread is bound to them. Values that hwloc does not know keep Machine's defaults.
+/// Queries hwloc and, for this system, its control groups. hwloc obeys HWLOC_SYNTHETIC and
+/// HWLOC_XMLFILE: plans use such topologies, but no thread is bound to them. Values that hwloc does
+/// not know keep Machine's defaults.
 Topology detect_topology();
 
 /// The topology of `description` in hwloc's notation ("pack:2 core:4 pu:2"). Throws

@@ -2,12 +2,14 @@
 #include <fmt/ranges.h>
 
 #include <cstdio>
+#include <optional>
 
 #include "apps/commands/commands.h"
 #include "apps/settings/command_line.h"
 #include "engine/build_info.h"
 #include "engine/options/settings.h"
 #include "engine/simd.h"
+#include "scheduler/control_groups.h"
 #include "scheduler/topology.h"
 
 namespace vantage::apps {
@@ -21,6 +23,7 @@ void print_table(const BuildInfo& build, const SystemInfo& system,
                  const scheduler::Topology& topology) {
   const scheduler::Machine& machine = topology.machine;
   constexpr std::size_t kKib = 1024;
+  const std::optional<double> quota = scheduler::read_system_limits().processors;
   fmt::print("Vantage            {}\n", build.version);
   fmt::print("compiler           {}\n", build.compiler);
   fmt::print("libraries          OpenCV {}, TBB {}, FFmpeg {}\n", build.opencv, build.tbb,
@@ -32,7 +35,9 @@ void print_table(const BuildInfo& build, const SystemInfo& system,
   fmt::print("  in this build    {}\n", fmt::join(built_instruction_sets(), " "));
   fmt::print("hardware threads   {} on {}, {}{}\n", machine.hardware_threads,
              counted(machine.cores, "core"), counted(machine.numa_nodes, "NUMA node"),
-             topology.system == nullptr ? " (simulated)" : "");
+             topology.system == nullptr ? " (simulated)"
+             : quota                    ? fmt::format(", with a quota of {:.3g} processors", *quota)
+                                        : "");
   for (const scheduler::NumaNode& node : topology.nodes) {
     fmt::print("  {:<17}{} on {}, {} MiB\n", fmt::format("NUMA node {}", node.number),
                counted(node.hardware_threads(), "thread"),
@@ -47,6 +52,7 @@ void print_table(const BuildInfo& build, const SystemInfo& system,
 SettingValue machine_json(const BuildInfo& build, const SystemInfo& system,
                           const scheduler::Topology& topology) {
   const scheduler::Machine& machine = topology.machine;
+  const std::optional<double> quota = scheduler::read_system_limits().processors;
   SettingValue nodes = SettingValue::array();
   for (const scheduler::NumaNode& node : topology.nodes) {
     nodes.push_back({{"node", node.number},
@@ -66,6 +72,7 @@ SettingValue machine_json(const BuildInfo& build, const SystemInfo& system,
           {"isa_available", available_instruction_sets()},
           {"isa_built", built_instruction_sets()},
           {"hardware_threads", machine.hardware_threads},
+          {"processor_quota", quota ? SettingValue(*quota) : SettingValue()},
           {"cores", machine.cores},
           {"numa_nodes", machine.numa_nodes},
           {"nodes", nodes},

@@ -24,12 +24,22 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
       "Cameras: OpenCV, ROS, Kalibr, Middlebury, KITTI or other file, or two, A,B; default: "
       "estimated from the images");
   add_calibration_choice_settings(settings, job.calibration_choice);
+  Setting& board = settings.add(
+      "board", "BOARD",
+      std::string("Cameras from pairs that show a flat board, in different places, tilted. ") +
+          kBoardHelp);
+  board.set = [&job](const SettingValue& value) {
+    const std::string text = to_text(value);
+    job.board = text == "none" ? std::nullopt : std::optional(parse_board(text));
+  };
+  board.get = [&job]() -> SettingValue { return job.board ? job.board->text : "none"; };
   settings.number("baseline", job.baseline_m, "METRES",
                   "Distance of the cameras: gives estimated cameras their scale; auto: that of "
                   "--calibration");
   settings.integer(
       "sample-pairs", job.sample_pairs, "N",
-      "Maximum number of pairs to estimate the cameras from and to measure row errors in");
+      "Maximum number of pairs to estimate the cameras from and to measure row errors in; auto: "
+      "10, or 50 of a board");
   add_white_level_setting(settings, job.input.white_level);
   add_reading_settings(settings, job.input.reading);
   settings.start_group("Output: at least one of these");
@@ -49,10 +59,11 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   add_common_settings(settings, job.common, Work::kWithoutMatching);
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(
-      {"left", "right", "calibration", "output", "matrices", "valid-mask", "kept-outline",
+      {"left", "right", "calibration", "board", "output", "matrices", "valid-mask", "kept-outline",
        "threads", "quiet"},
       {"vantage rectify left.jpg right.jpg -o rectified",
        "vantage rectify left/ right/ -o rectified --matrices rig.yml",
+       "vantage rectify board/left/ board/right/ --board 9x6:25mm --matrices rig.yml",
        "vantage rectify left.jpg right.jpg --calibration rig.yml -o rectified"});
 }
 

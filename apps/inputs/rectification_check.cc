@@ -52,7 +52,7 @@ void tell_of(const RowTask& task, const RowCheck& check, bool is_corrected, RunR
          cost_text(error, task.lines), vertical_error_text(error), what_to_do(task, check));
   }
   if (looks_exchanged) {
-    tell("{}: warning: {}\n", command, exchanged_text(error));
+    tell("{}: warning: {}\n", command, exchanged_text(error, task.lines));
   }
 }
 

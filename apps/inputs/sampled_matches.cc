@@ -32,12 +32,11 @@ void read_equal_pair(PairSource& pairs, int index, FramePair& pair) {
   }
 }
 
-std::vector<PointMatch> gather_matches(
-    PairSource& pairs, const std::vector<int>& indices, ImageSize size, Execution& execution,
-    RunReport& report, const std::function<std::vector<PointMatch>(FramePair&)>& matches_of) {
+void for_each_sampled_pair(PairSource& pairs, const std::vector<int>& indices, ImageSize size,
+                           Execution& execution, RunReport& report,
+                           const std::function<void(std::size_t i, FramePair& pair)>& work) {
   const std::size_t together = static_cast<std::size_t>(execution.executor().thread_count());
   std::vector<FramePair> group(std::min(together, indices.size()));
-  std::vector<PointMatch> all;
   for (std::size_t first = 0; first < indices.size(); first += group.size()) {
     const std::size_t count = std::min(group.size(), indices.size() - first);
     report.timed_file_access("read", [&] {
@@ -51,16 +50,24 @@ std::vector<PointMatch> gather_matches(
         }
       }
     });
-    std::vector<std::vector<PointMatch>> found(count);
     report.timed_compute("features", [&] {
       execution.executor().parallel_for(static_cast<int>(count), [&](int task) {
         const auto i = static_cast<std::size_t>(task);
-        found[i] = matches_of(group[i]);
+        work(first + i, group[i]);
       });
     });
-    for (const std::vector<PointMatch>& matches : found) {
-      all.insert(all.end(), matches.begin(), matches.end());
-    }
+  }
+}
+
+std::vector<PointMatch> gather_matches(
+    PairSource& pairs, const std::vector<int>& indices, ImageSize size, Execution& execution,
+    RunReport& report, const std::function<std::vector<PointMatch>(FramePair&)>& matches_of) {
+  std::vector<std::vector<PointMatch>> found(indices.size());
+  for_each_sampled_pair(pairs, indices, size, execution, report,
+                        [&](std::size_t i, FramePair& pair) { found[i] = matches_of(pair); });
+  std::vector<PointMatch> all;
+  for (const std::vector<PointMatch>& matches : found) {
+    all.insert(all.end(), matches.begin(), matches.end());
   }
   return all;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <vector>
 
@@ -18,9 +19,14 @@ std::vector<int> sampled_pairs(int pairs, int max_pairs);
 /// Reads pair `index`. Throws Error, also when its images have different sizes.
 void read_equal_pair(PairSource& pairs, int index, FramePair& pair);
 
-/// The results of `matches_of` for these pairs, in order; it is called for as many pairs at a time
-/// as there are threads. Reading and finding are stages of the report ("read", "features"). Throws
-/// Error if a pair has another size.
+/// Calls work(i, pair) for pair indices[i], for as many pairs at a time as there are threads.
+/// Reading and working are stages of the report ("read", "features"). Throws Error if a pair has
+/// another size.
+void for_each_sampled_pair(PairSource& pairs, const std::vector<int>& indices, ImageSize size,
+                           Execution& execution, RunReport& report,
+                           const std::function<void(std::size_t i, FramePair& pair)>& work);
+
+/// The results of `matches_of` for these pairs, in order; see for_each_sampled_pair().
 std::vector<PointMatch> gather_matches(
     PairSource& pairs, const std::vector<int>& indices, ImageSize size, Execution& execution,
     RunReport& report, const std::function<std::vector<PointMatch>(FramePair&)>& matches_of);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "apps/commands/commands.h"
 #include "apps/inputs/kitti_cameras_choice.h"
@@ -15,6 +16,7 @@
 #include "apps/process/outputs.h"
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
+#include "apps/reports/board_report.h"
 #include "apps/reports/rectify_results.h"
 #include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
@@ -22,6 +24,7 @@
 #include "engine/image/left_out.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
+#include "engine/rectification/board/board_calibration.h"
 #include "engine/rectification/feature_matches.h"
 #include "engine/rectification/improved_rectification.h"
 #include "engine/rectification/rectification_file.h"
@@ -35,6 +38,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMaxSamplePairs = 1000;
+constexpr int kSamplePairs = 10;
+constexpr int kSamplePairsOfBoard = 50;
 
 void check(const RectifyJob& job, const Settings& settings) {
   if (job.calibration.empty()) {
@@ -43,9 +48,12 @@ void check(const RectifyJob& job, const Settings& settings) {
   job.rectification.validate();
   job.common.execution.validate();
   job.input.validate();
-  if (job.sample_pairs < 1 || job.sample_pairs > kMaxSamplePairs) {
+  if (job.sample_pairs && (*job.sample_pairs < 1 || *job.sample_pairs > kMaxSamplePairs)) {
     throw UsageError(fmt::format("--sample-pairs is {}, expected a number from 1 to {}",
-                                 job.sample_pairs, kMaxSamplePairs));
+                                 *job.sample_pairs, kMaxSamplePairs));
+  }
+  if (job.board) {
+    settings.refuse_idle({"calibration", "baseline"}, "with --board, which gives both");
   }
   require_above_0("baseline", job.baseline_m);
   if (job.output.empty() && job.matrices.empty() && job.valid_mask.empty()) {
@@ -73,6 +81,22 @@ void check_pairs(const PairSource& pairs, FileChecks& files) {
   for (const fs::path& file : pairs.files()) {
     files.add_input(file);
   }
+}
+
+/// The cameras that the board in these pairs shows.
+BoardCalibration find_cameras(const CalibrationBoard& board, PairSource& pairs,
+                              const std::vector<int>& sample, ImageSize size, Execution& execution,
+                              RunReport& report) {
+  std::vector<BoardPicture> pictures;
+  for (const int index : sample) {
+    pictures.push_back({.name = pairs.describe(index)});
+  }
+  for_each_sampled_pair(
+      pairs, sample, size, execution, report, [&](std::size_t i, FramePair& pair) {
+        pictures[i].seen = {find_board(pair.left, board), find_board(pair.right, board)};
+      });
+  return report.timed_compute(
+      "estimate", [&] { return calibrate_with_board(board, std::move(pictures), size); });
 }
 
 void set_baseline(const RectifyJob& job, StereoCalibration& calibration) {
@@ -162,11 +186,17 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
     results->check(*pairs, files);
   }
   const ImageSize size = {pair.left.width(), pair.left.height()};
-  const std::vector<int> sample = sampled_pairs(pair_count, job.sample_pairs);
+  const std::vector<int> sample = sampled_pairs(
+      pair_count, job.sample_pairs.value_or(job.board ? kSamplePairsOfBoard : kSamplePairs));
   const std::string inputs = fmt::format("{} and {}", job.input.left, job.input.right);
 
   Rectification rectification;
-  if (job.calibration.empty()) {
+  std::optional<BoardCalibration> board;
+  if (job.board) {
+    board = about(
+        inputs, [&] { return find_cameras(*job.board, *pairs, sample, size, execution, report); });
+    rectification.calibration = board->calibration;
+  } else if (job.calibration.empty()) {
     rectification.matches =
         gather_matches(*pairs, sample, size, execution, report,
                        [](FramePair& one) { return match_features(one.left, one.right); });
@@ -193,11 +223,13 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
   Rectifier rectifier =
       job.calibration.empty() ? about(inputs, rectifier_of_all) : rectifier_of_all();
   tell_remarks(rectifier.pair().remarks, job.common, report);
+  // Squares of a board look alike: their features are mistaken for each other.
   const std::vector<PointMatch> found =
-      gather_matches(*pairs, sample, size, execution, report, [&](FramePair& one) {
-        rectify_pair(rectifier, one, execution);
-        return match_features(one.left, one.right);
-      });
+      board ? rectified_matches(board->matches, board->calibration, rectifier.pair())
+            : gather_matches(*pairs, sample, size, execution, report, [&](FramePair& one) {
+                rectify_pair(rectifier, one, execution);
+                return match_features(one.left, one.right);
+              });
   rectification.remaining = vertical_error(found);
   if (rectification.estimate) {
     report.timed_compute("estimate", [&] {
@@ -225,13 +257,21 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
   if (results) {
     rectify_pairs(*pairs, rectifier, *results, job.common.quiet, execution, report);
   }
-  report.set_results(results_of(rectification, rectifier.pair(), pair_count));
+  SettingValue values = results_of(rectification, rectifier.pair(), pair_count);
+  values["board"] = board ? board_values(*board) : SettingValue();
+  report.set_results(std::move(values));
   report.write(job.common.report);
   if (!job.common.quiet) {
     for (const std::string& remark : pairs->remarks()) {
       tell("rectify: note: {}\n", with_dashes(remark));
     }
-    print_results(rectification, rectifier.pair(), pair_count, job.calibration);
+    if (board) {
+      print_board(*board);
+    }
+    print_results(
+        rectification, rectifier.pair(), pair_count,
+        board ? fmt::format("{} pairs, corners off by {:.2f} px", board->pairs, board->rms_px)
+              : job.calibration);
     report.print_summary();
   }
   return interrupted.load() ? kExitInterrupted : kExitDone;

@@ -5,6 +5,7 @@
 
 #include "apps/settings/common_options.h"
 #include "engine/options/settings.h"
+#include "engine/rectification/board/calibration_board.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/sequence/pairs/pair_source.h"
 
@@ -13,8 +14,9 @@ namespace vantage::apps {
 /// What `rectify` is asked for.
 struct RectifyJob {
   PairSourceOptions input;
-  std::string calibration;  ///< file; empty: from the images alone
-  int sample_pairs = 10;
+  std::string calibration;                ///< file; empty: from the images alone
+  std::optional<CalibrationBoard> board;  ///< that the pairs show; instead of a calibration
+  std::optional<int> sample_pairs;        ///< empty: 10, or 50 of a board
   CalibrationChoice calibration_choice;
   RectificationOptions rectification;
   std::optional<double> baseline_m;  ///< empty: that of the calibration

@@ -32,11 +32,12 @@ std::string vertical_error_text(const VerticalError& error) {
                      error.inliers);
 }
 
-std::string exchanged_text(const VerticalError& error) {
+std::string exchanged_text(const VerticalError& error, std::string_view lines) {
   return fmt::format(
-      "left and right look exchanged, or shifted against each other: {:.0f} % of {} points have "
-      "negative disparities, {} in all",
-      100 * error.negative_share, error.inliers, disparities_text(error));
+      "{} look exchanged, or shifted against each other: {:.0f} % of {} points have negative "
+      "disparities, {} in all",
+      lines == "columns" ? "upper and lower" : "left and right", 100 * error.negative_share,
+      error.inliers, disparities_text(error));
 }
 
 std::string disparities_text(const VerticalError& error) {

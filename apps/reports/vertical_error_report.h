@@ -18,8 +18,8 @@ SettingValue vertical_error_values(const VerticalError& error);
 std::string vertical_error_text(const VerticalError& error);
 
 /// "left and right look exchanged, or shifted against each other: 97 % of 240 points have negative
-/// disparities, -40:2 in all".
-std::string exchanged_text(const VerticalError& error);
+/// disparities, -40:2 in all"; "upper and lower" of a pair whose `lines` are "columns".
+std::string exchanged_text(const VerticalError& error, std::string_view lines = "rows");
 
 /// The disparities that the pair shows, as whole numbers for --disparities: "-3:17".
 std::string disparities_text(const VerticalError& error);

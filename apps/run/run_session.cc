@@ -291,8 +291,19 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
       job.in_flight ? job.in_flight : session.tuning.settings.frames_in_flight;
   SequenceOptions planned = job.sequence;
   planned.match.disparities = session.columns.widest_with(planned.match.disparities);
-  session.memory =
-      plan_memory(planned, {in_flight, job.memory_bytes}, session.shape, first, session.execution);
+  const MemoryRequest request = memory_request(in_flight, job.memory_bytes);
+  session.free_bytes = request.free_bytes;
+  session.memory = plan_memory(planned, request, session.shape, first, session.execution);
+  if (!request.allows(session.memory)) {
+    tell_remarks(std::vector{Remark{
+                     .kind = Remark::Kind::kWarning,
+                     .subject = "memory",
+                     .text = fmt::format(
+                         "one frame needs about {}, and {} are free here: the system may end "
+                         "the run; a smaller range or another preset needs less",
+                         size_text(session.memory.total_bytes), size_text(session.free_bytes))}},
+                 job.common, report);
+  }
   session.pairs->forget_start();
   return session;
 }
@@ -331,11 +342,13 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
                    : session.columns.widest        ? range + " or of the list"
                                                    : range,
                    strips_text(session.memory.chain)));
-  line(fmt::format("{}, {} frame{} in flight; memory about {}{}{}", session.executor,
-                   session.memory.in_flight, session.memory.in_flight == 1 ? "" : "s",
-                   size_text(session.memory.total_bytes),
-                   session.takes_any_size(job) ? " for pairs of this size" : "",
-                   job.memory_bytes ? " of " + size_text(*job.memory_bytes) : std::string()));
+  line(fmt::format(
+      "{}, {} frame{} in flight; memory about {}{}{}", session.executor, session.memory.in_flight,
+      session.memory.in_flight == 1 ? "" : "s", size_text(session.memory.total_bytes),
+      session.takes_any_size(job) ? " for pairs of this size" : "",
+      job.memory_bytes         ? " of " + size_text(*job.memory_bytes)
+      : session.free_bytes > 0 ? fmt::format(" of {} free", size_text(session.free_bytes))
+                               : ""));
   if (!session.tuning.summary.empty()) {
     line(fmt::format("{} ({})", session.tuning.summary,
                      session.tuning.report["file"].get<std::string>()));

@@ -18,7 +18,8 @@ struct RunSession : SequenceSession {
   AppliedTuning tuning;
   ExecutionOptions execution;  ///< of the run: as the user gave it, then as tuned
   MemoryPlan memory;
-  std::string executor;  ///< "2 threads (tbb)"
+  std::size_t free_bytes = 0;  ///< of memory, when the run was planned; 0: unknown
+  std::string executor;        ///< "2 threads (tbb)"
 
   /// Names this process's part of the run, for the journal: "all", "2-of-7", "frames-100-199".
   [[nodiscard]] static std::string part_name(const RunJob& job);

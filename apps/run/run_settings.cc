@@ -104,8 +104,10 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
   settings.start_group("Pipeline", false);
   add_in_flight_setting(settings, job);
   add_live_setting(settings, job);
-  add_size_setting(settings, "memory", job.memory_bytes,
-                   "Memory budget of the plan, such as 800M or 4G; auto: no limit");
+  add_size_setting(
+      settings, "memory", job.memory_bytes,
+      "Memory budget of the plan, such as 800M or 4G; auto: 80 % of what is free here, "
+      "limits of control groups included");
   settings.flag("dry-run", job.dry_run, "Print the plan and stop");
   settings.choice<ProgressStyle>("progress", job.progress,
                                  {{"auto", ProgressStyle::kAuto},

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <numeric>
@@ -119,6 +121,15 @@ struct Agreement {
   double support = 0;                  ///< of all regions
   double pixels = 0;                   ///< of an image
 
+  /// Share of the cells of the left image, from that column of cells on, in which some region lies.
+  [[nodiscard]] double seen_share(int first_column) const {
+    std::uint64_t cells = 0;
+    for (const MatchedRegion& region : regions) {
+      cells |= region.cells;
+    }
+    const std::uint64_t counted = 0x0101010101010101 * ((0xFFU << first_column) & 0xFFU);
+    return static_cast<double>(std::popcount(cells & counted)) / std::popcount(counted);
+  }
   /// Share of the matches below `half_pixels_end` half pixels; 0 if there are none.
   [[nodiscard]] double share_below(double half_pixels_end) const {
     const auto end = std::lower_bound(half_pixels.begin(), half_pixels.end(), half_pixels_end);
@@ -212,9 +223,13 @@ std::optional<DisparityRange> find_disparity_range(const Photograph& left, const
   const double unseen = 1 - std::min(1.0, agreement.support / (kFullSupport * agreement.pixels));
   const double margin_px = kMarginPx + (kMarginReducedPx + unseen * kUnseenReducedPx) * factor +
                            (kMarginRatio + unseen * kUnseenRatio) * (max_px - min_px);
+  // Where large parts show nothing, far things are behind them or nothing tells. Columns that the
+  // right image does not show do not count.
+  const int hidden_cells = std::clamp(static_cast<int>(std::ceil(8 * max_px / left.width())), 0, 7);
+  const double behind_px = std::max(min_px, 0.0) * (1 - agreement.seen_share(hidden_cells));
   const int farthest = left.width() - 1;
   DisparityRange range{
-      std::clamp(static_cast<int>(std::floor(min_px - margin_px)), -farthest, farthest),
+      std::clamp(static_cast<int>(std::floor(min_px - behind_px - margin_px)), -farthest, farthest),
       std::clamp(static_cast<int>(std::ceil(max_px + margin_px)), -farthest, farthest)};
   if (infinity == Infinity::kAtZero && agreement.share_below(-1) < kNegativeShare) {
     range.min = std::max(range.min, 0);

@@ -17,9 +17,10 @@ enum class Infinity {
 /// Disparity range to search in a rectified pair: that of the windows of both reduced images that
 /// are evidence (find_window_matches()), from −width/8 to width/3, without groups that may be
 /// chance, plus a margin, which is wider where little of the images is matched. Sky, walls, noise
-/// and repeated texture do not count. It starts at 0 or above unless at least 2 % of the matches
-/// are negative or `infinity` is anywhere. Empty if there is hardly any evidence: constant images,
-/// noise, unrelated images.
+/// and repeated texture do not count; where they fill parts of the image, things far behind them
+/// are likely, and the range begins by that share nearer to 0. It starts at 0 or above unless at
+/// least 2 % of the matches are negative or `infinity` is anywhere. Empty if there is hardly any
+/// evidence: constant images, noise, unrelated images.
 ///
 /// Images of 512 to 1280 pixels width are reduced to a quarter, larger ones to a width of 320, so
 /// that the time is a few per cent of the matching time; surfaces of less than a window, 3 × 7

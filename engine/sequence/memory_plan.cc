@@ -7,6 +7,7 @@
 #include "engine/error.h"
 #include "engine/matching/stereo_matcher.h"
 #include "engine/sequence/steps/step_list.h"
+#include "scheduler/control_groups.h"
 
 namespace vantage {
 namespace {
@@ -49,6 +50,18 @@ scheduler::ChainPlan chain_of(const SequenceOptions& options, const FramePair& f
 
 int default_frames_in_flight(int threads) { return std::min(threads + 2, kDefaultMaxInFlight); }
 
+MemoryRequest memory_request(std::optional<int> in_flight,
+                             std::optional<std::size_t> memory_bytes) {
+  MemoryRequest request{.in_flight = in_flight, .memory_bytes = memory_bytes};
+  if (!memory_bytes) {
+    request.free_bytes = scheduler::read_system_limits().free_bytes;
+    if (request.free_bytes > 0) {
+      request.memory_bytes = request.free_bytes / 5 * 4;
+    }
+  }
+  return request;
+}
+
 MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& request,
                        const PairShape& shape, const FramePair& first,
                        const ExecutionOptions& execution) {
@@ -87,7 +100,7 @@ MemoryPlan plan_memory(const SequenceOptions& options, const MemoryRequest& requ
     }
     plan.total_bytes = fixed + frames + static_cast<std::size_t>(threads) * scratch +
                        matched * plan.chain.stored_bytes;
-    if (!request.memory_bytes || plan.total_bytes <= *request.memory_bytes) {
+    if (request.allows(plan) || (request.free_bytes > 0 && plan.in_flight == 1)) {
       return plan;
     }
   }

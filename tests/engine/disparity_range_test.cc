@@ -130,6 +130,28 @@ TEST(DisparityRange, FindsASmallObjectFarBeforeTheBackground) {
   EXPECT_GE(range.max, 75);
 }
 
+TEST(DisparityRange, BeginsNearerToZeroWherePartsOfTheImagesShowNothing) {
+  const BookPair pair = flat_pair(320, 160, 40, BookPattern::kRandomDots);
+  const DisparityRange all = estimate_disparity_range(pair.left, pair.right, execution());
+  EXPECT_GE(all.min, 34);
+  int last_min = all.min;
+  for (const int rows : {80, 120}) {
+    BookPair below_sky = flat_pair(320, 160, 40, BookPattern::kRandomDots);
+    for (Photograph* photograph : {&below_sky.left, &below_sky.right}) {
+      auto& image = std::get<Image<std::uint8_t>>(photograph->pixels);
+      for (const auto [x, y] : positions_of({0, image.width()}, {0, rows})) {
+        image.at(x, y) = 200;
+      }
+    }
+    const DisparityRange range =
+        estimate_disparity_range(below_sky.left, below_sky.right, execution());
+    EXPECT_LT(range.min, last_min - 5) << rows;
+    EXPECT_GE(range.min, 0) << rows;
+    EXPECT_LE(range.max, all.max + 4) << rows;
+    last_min = range.min;
+  }
+}
+
 TEST(DisparityRange, IgnoresWhatTheOtherImageDoesNotConfirm) {
   BookPair pair = flat_pair(320, 96, 4, BookPattern::kRandomDots);
   // A piece of the right image that the left one shows a second time, 100 columns away.

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "scheduler/control_groups.h"
+
 namespace vantage::scheduler::topology_test {
 
 using testing::ElementsAre;
@@ -79,7 +81,9 @@ TEST(Topology, OfThisMachineIsWhatThisProcessMayUse) {
   }
   cpu_set_t mask;
   ASSERT_EQ(sched_getaffinity(0, sizeof mask, &mask), 0);
-  EXPECT_EQ(topology.machine.hardware_threads, CPU_COUNT(&mask));
+  const SystemLimits limits = read_system_limits();
+  EXPECT_EQ(topology.machine.hardware_threads, limits.threads_of(CPU_COUNT(&mask)));
+  EXPECT_EQ(topology.machine.memory_bytes, limits.memory_bytes);
   for (const NumaNode& node : topology.nodes) {
     for (const Core& core : node.cores) {
       for (const int hardware_thread : core) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <numeric>
@@ -200,6 +201,7 @@ std::vector<MatchedRegion> regions_of(Winners winners) {
     float& ambiguity = winners.ambiguity.row(y)[x];
     regions.back().support += 1 - static_cast<double>(ambiguity / kMaxAmbiguity);
     regions.back().half_pixels.push_back(static_cast<int>(winners.offset.row(y)[x]));
+    regions.back().cells |= std::uint64_t{1} << (8 * (8 * y / height) + 8 * x / width);
     ambiguity = 1;
     open.emplace_back(x, y);
   };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "engine/execution.h"
@@ -22,6 +23,8 @@ struct MatchedRegion {
   /// Σ over its pixels of 1 − a/0.6, a = (1.02 − r₁)/(1.02 − r₂): r₁ the correlation at the match,
   /// r₂ the best one elsewhere. About 0.2 per pixel by chance, 0.7 on good texture.
   double support = 0;
+  /// Where it lies: bit 8·row + column of a grid of 8 × 8 cells over the image.
+  std::uint64_t cells = 0;
 };
 
 /// Matches of windows of 3 × 7 pixels that are evidence by themselves, without any assumption about

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "engine/options/setting_value.h"
+#include "engine/rectification/board/board_calibration.h"
+
+namespace vantage::apps {
+
+/// What pictures of a board gave, on stderr: residuals of every picture, what is left out, the
+/// coverage of both pictures, what to photograph next.
+void print_board(const BoardCalibration& board);
+/// The same, for reports.
+SettingValue board_values(const BoardCalibration& board);
+
+}  // namespace vantage::apps
