@@ -19,10 +19,10 @@
 #include "engine/error.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/json_text.h"
+#include "engine/io/video/stated_format.h"
 #include "engine/jobs/list_columns.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/options/frame_step_setting.h"
-#include "engine/sequence/film_remark.h"
 #include "engine/sequence/journal/delivered_frames.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/pairs/sequence_range.h"
@@ -192,6 +192,30 @@ void choose_rows(RunJob& job, const Settings& settings, FramePair& first, Execut
   tell("run: rows: {}\n", text);
 }
 
+/// What videos state of their pictures, and a line of what becomes of what the input states.
+void take_film_format(const RunSession& session, RunJob& job, RunReport& report) {
+  SequenceOptions& options = job.sequence;
+  options.film = session.pairs->film_format();
+  std::string stated = to_text(options.film);
+  if (stated.empty()) {
+    return;
+  }
+  if (session.rectifier && options.unrectified != UnrectifiedSearch::kOnPhotographs &&
+      options.film.pixel_aspect != PixelAspect()) {
+    options.film.pixel_aspect = {};
+    stated += "; rectified pixels are square";
+  }
+  const bool in_videos = options.saves_as_video(SequenceOutput::kViews) ||
+                         options.saves_as_video(SequenceOutput::kStereo);
+  const char* const fate = writes_stream(job) ? "y4m states the shape of pixels and the range alone"
+                           : in_videos
+                               ? written_as(options.film.colours)
+                               : "images of views would have its values, and state nothing of it";
+  tell_remarks({{{Remark::Kind::kNote, "film",
+                  fmt::format("the film has {}: matched as it is coded; {}", stated, fate)}}},
+               job.common, report);
+}
+
 }  // namespace
 
 std::string RunSession::part_name(const RunJob& job) {
@@ -273,14 +297,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   job.sequence.validate();
   job.sequence.frame_rate =
       job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
-  const FilmFormat film = session.pairs->film_format();
-  job.sequence.film = film;
-  if (session.rectifier && job.sequence.unrectified != UnrectifiedSearch::kOnPhotographs) {
-    job.sequence.film.pixel_aspect = {};
-  }
-  if (const auto remark = film_remark(film, job.sequence, writes_stream(job))) {
-    tell_remarks({{*remark}}, job.common, report);
-  }
+  take_film_format(session, job, report);
   session.identity = identity_of(job, settings, session);
   session.tuning = find_tuning(job, first, settings);
   session.execution = with_tuned(job.common.execution, session.tuning.settings);

@@ -57,8 +57,7 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
   add_pair_by_setting(settings, input.pair_by);
   path("stereo", input.stereo, "SOURCE",
        "Frames with both images, see --packing (MPO and JPS need none); a stream: - (standard "
-       "input), a named pipe, "
-       "/dev/videoN, tcp://, udp://, rtsp:// or http://");
+       "input), a named pipe, /dev/videoN, tcp:// or rtsp://");
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),
       "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "

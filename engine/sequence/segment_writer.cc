@@ -11,6 +11,7 @@
 
 #include "engine/error.h"
 #include "engine/image/stereo_display.h"
+#include "engine/io/video/stated_format.h"
 #include "engine/sequence/journal/pending_files.h"
 #include "engine/sequence/steps/frame_needs.h"
 #include "engine/sequence/steps/frame_pictures.h"
@@ -87,7 +88,7 @@ void SegmentWriter::write(Stream& stream, const Photograph& picture, int times) 
           layout_.segment(*stream.output, frames_), picture.width(), picture.height(),
           VideoEncoding{options_.frame_rate, options_.crf,
                         output == SequenceOutput::kDepthVideo ? options_.depth_coding
-                                                              : colour_coding(format.colours.bits),
+                                                              : colour_coding(format.colours),
                         format});
     }
     for (int i = 0; i < times; ++i) {

@@ -11,7 +11,7 @@ class RunFilmFormats : public StreamTest {
   void write_film(const std::string& path, const FilmFormat& format) const {
     VideoWriter writer(
         path, 2 * kWidth, kHeight,
-        {.rate = {}, .crf = 10, .coding = colour_coding(format.colours.bits), .format = format});
+        {.rate = {}, .crf = 10, .coding = VideoCoding::kHevcColours_10, .format = format});
     for (int i = 0; i < 6; ++i) {
       Photograph packed;
       pack_stereo(read_photograph(left_ + "/" + frame_file(i)),
@@ -40,8 +40,11 @@ TEST_F(RunFilmFormats, AreKeptByWhatShowsTheFilm) {
                                               out)))),
             0)
       << err();
-  EXPECT_THAT(err(), HasSubstr("pixels 4:3, 10 bits, primaries bt2020, transfer smpte2084, matrix "
-                               "bt2020nc: matched as it is coded; videos of views state the same"));
+  EXPECT_THAT(
+      err(),
+      HasSubstr(
+          "pixels 4:3, 10 bits, primaries bt2020, transfer smpte2084, matrix "
+          "bt2020nc: matched as it is coded; videos of views state the same (HEVC, 10 bits)"));
   EXPECT_EQ(format_of(out + "/views.mp4"), format);
   EXPECT_EQ(format_of(out + "/stereo.mp4"), format);
   const FilmFormat preview = {.pixel_aspect = {4, 3},

@@ -180,8 +180,10 @@ TEST_F(RunStreamSources, WhatCannotBeReachedIsOneLine) {
   EXPECT_EQ(shell(command({"--left", pipe, "--right", right_, "-o", out_})), 2);
   EXPECT_THAT(err(), HasSubstr("left is a stream, expected one for both sides"));
   // Nobody writes: Ctrl-C ends the waiting.
-  EXPECT_EQ(shell(command(packed(pipe, out_)) + " & pid=$!; sleep 0.3; kill -TERM $pid; wait $pid"),
-            130)
+  EXPECT_EQ(
+      shell(command(packed(pipe, out_)) + " & pid=$!; until ls -l /proc/$pid/fd | grep -q pipe$; "
+                                          "do sleep 0.02; done; kill -TERM $pid; wait $pid"),
+      130)
       << err();
 }
 

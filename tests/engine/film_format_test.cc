@@ -54,7 +54,7 @@ template <typename T>
 void write_film(const std::filesystem::path& path, const FilmFormat& format) {
   VideoWriter writer(
       path, kWidth, kHeight,
-      {.rate = {}, .crf = 2, .coding = colour_coding(format.colours.bits), .format = format});
+      {.rate = {}, .crf = 2, .coding = colour_coding(format.colours), .format = format});
   for (int i = 0; i < 3; ++i) {
     writer.write(blocks<T>(i));
   }
@@ -102,12 +102,12 @@ TEST(FilmFormats, FullRangeBt601IsKept) { expect_kept<std::uint8_t>(kSd, 0.02); 
 TEST(FilmFormats, WhatStatesNothingIsBt709) {
   FilmColours usual = {
       .primaries = AVCOL_PRI_BT709, .transfer = AVCOL_TRC_BT709, .matrix = AVCOL_SPC_BT709};
-  EXPECT_EQ(written_colours({}), usual);
-  EXPECT_EQ(written_colours({.matrix = AVCOL_SPC_BT709}), usual);
-  EXPECT_EQ(written_colours({.matrix = AVCOL_SPC_RGB}), usual);
+  EXPECT_EQ(written_colours({}, VideoCoding::kH264), usual);
+  EXPECT_EQ(written_colours({.matrix = AVCOL_SPC_BT709}, VideoCoding::kH264), usual);
+  EXPECT_EQ(written_colours({.matrix = AVCOL_SPC_RGB}, VideoCoding::kH264), usual);
   // Of a film of BT.601 nobody knows which primaries: none are stated.
   const FilmColours sd = {.matrix = AVCOL_SPC_SMPTE170M};
-  EXPECT_EQ(written_colours(sd), sd);
+  EXPECT_EQ(written_colours(sd, VideoCoding::kH264), sd);
   EXPECT_EQ(to_text({}), "");
   EXPECT_EQ(to_text(kPq),
             "pixels 4:3, 10 bits, primaries bt2020, transfer smpte2084, matrix bt2020nc");

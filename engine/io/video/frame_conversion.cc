@@ -83,19 +83,17 @@ class GreyToFrame {
   LibavFrame frame_;
 };
 
-/// Value of 8 or 16 bits from any depth, rounded.
+/// Value of 8 bits, or of 16 bits as libswscale takes them, from any depth, rounded.
 template <typename Sample, typename T>
 Sample to_sample(T value) {
-  constexpr unsigned kWhite = std::numeric_limits<Sample>::max();
-  if constexpr (std::is_same_v<T, Sample>) {
-    return value;
-  } else if constexpr (std::is_same_v<T, std::uint8_t>) {
-    return static_cast<Sample>(value * 257U);
-  } else if constexpr (std::is_same_v<T, std::uint16_t>) {
-    return static_cast<Sample>((value * 255U + 32767U) / 65535U);
-  } else {
+  // White of 16 bits is 255 * 256 there.
+  constexpr unsigned kWhite = sizeof(Sample) == 1 ? 255 : 65280;
+  if constexpr (std::is_floating_point_v<T>) {
     return static_cast<Sample>(
         std::lround(static_cast<float>(kWhite) * std::clamp(value, 0.0F, 1.0F)));
+  } else {
+    constexpr unsigned kMax = std::numeric_limits<T>::max();
+    return static_cast<Sample>((value * kWhite + kMax / 2) / kMax);
   }
 }
 
@@ -125,9 +123,12 @@ class PhotographToFrame {
                     const FilmColours& source)
       : width_(even(width)), height_(even(height)) {
     constexpr auto kRgb = sizeof(Sample) == 1 ? AV_PIX_FMT_RGB24 : AV_PIX_FMT_RGB48;
-    const FilmColours colours = written_colours(source);
+    const FilmColours colours = written_colours(
+        source, sizeof(Sample) == 1 ? VideoCoding::kH264 : VideoCoding::kHevcColours_10);
     rgb_ = make_picture(width_, height_, kRgb);
     yuv_ = make_picture(width_, height_, coding.pixel_format);
+    yuv_->color_primaries = static_cast<AVColorPrimaries>(colours.primaries);
+    yuv_->color_trc = static_cast<AVColorTransferCharacteristic>(colours.transfer);
     yuv_->colorspace = static_cast<AVColorSpace>(colours.matrix);
     yuv_->color_range = colours.has_full_range ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
     yuv_->chroma_location = AVCHROMA_LOC_LEFT;
@@ -145,13 +146,11 @@ class PhotographToFrame {
     if (av_frame_make_writable(yuv_.get()) < 0) {
       throw std::bad_alloc();
     }
-    const auto* samples = std::get_if<Image<Sample>>(&photograph.pixels);
-    if (samples != nullptr && samples->channels() == 3 && samples->width() == width_ &&
-        samples->height() == height_) {
-      const std::array<const std::uint8_t*, 4> rgb = {
-          reinterpret_cast<const std::uint8_t*>(samples->row(0))};
-      const std::array<int, 4> pitch = {
-          static_cast<int>(samples->view().stride() * static_cast<std::ptrdiff_t>(sizeof(Sample)))};
+    const auto* bytes = std::get_if<Image<std::uint8_t>>(&photograph.pixels);
+    if (sizeof(Sample) == 1 && bytes != nullptr && bytes->channels() == 3 &&
+        bytes->width() == width_ && bytes->height() == height_) {
+      const std::array<const std::uint8_t*, 4> rgb = {bytes->row(0)};
+      const std::array<int, 4> pitch = {static_cast<int>(bytes->view().stride())};
       sws_scale(scaler_.get(), rgb.data(), pitch.data(), 0, height_, yuv_->data, yuv_->linesize);
       return *yuv_;
     }

@@ -49,7 +49,7 @@ void silence_libav();
 /// FFmpeg. None opens what its content names.
 inline constexpr const char* kVideoContainers =
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,av1,obu,ivf,"
-    "vc1,mjpeg,mpjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
+    "vc1,mjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
 
 /// Opens a video file and determines its streams. Only files are opened, and only containers that
 /// hold one video: no playlists, which name other files, no text, no images. A truncated file opens

@@ -222,9 +222,10 @@ void StreamedVideoWriter::write(const Photograph& frame) {
     put_rgb(frame);
   } else {
     if (!convert_) {
-      convert_ =
-          make_frame_conversion(is_grey ? VideoCoding::kFfv1_16 : colour_coding(film_.colours.bits),
-                                frame.width(), frame.height(), film_.colours);
+      convert_ = make_frame_conversion(is_grey                  ? VideoCoding::kFfv1_16
+                                       : film_.colours.bits > 8 ? VideoCoding::kHevcColours_10
+                                                                : VideoCoding::kH264,
+                                       frame.width(), frame.height(), film_.colours);
     }
     const AVFrame& converted = convert_(frame);
     if (format_ == StreamFormat::kY4m) {

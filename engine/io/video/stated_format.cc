@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "engine/io/video/libav_functions.h"
+
 extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
@@ -112,7 +114,7 @@ std::string to_text(const FilmFormat& format) {
   if (colours.has_full_range) {
     add("full range");
   }
-  const FilmColours written = written_colours(colours);
+  const FilmColours written = written_colours(colours, VideoCoding::kHevcColours_10);
   if (written.primaries == AVCOL_PRI_BT709 && written.transfer == AVCOL_TRC_BT709 &&
       written.matrix == AVCOL_SPC_BT709) {
     return text;
@@ -131,7 +133,20 @@ std::string to_text(const FilmFormat& format) {
   return text;
 }
 
-FilmColours written_colours(const FilmColours& source) {
+VideoCoding colour_coding(const FilmColours& source) {
+  const bool has_hevc = libav().avcodec_find_encoder_by_name(
+                            traits_of(VideoCoding::kHevcColours_10).encoder) != nullptr;
+  return has_hevc && (source.bits > 8 || source.is_hdr()) ? VideoCoding::kHevcColours_10
+                                                          : VideoCoding::kH264;
+}
+
+const char* written_as(const FilmColours& source) {
+  return colour_coding(source) == VideoCoding::kHevcColours_10
+             ? "videos of views state the same (HEVC, 10 bits)"
+             : "videos of views state the same (H.264, 8 bits)";
+}
+
+FilmColours written_colours(const FilmColours& source, VideoCoding /*coding*/) {
   FilmColours written = source;
   if (!is_made_of_rgb(source.matrix)) {
     written.matrix = source.primaries == AVCOL_PRI_BT2020 ? AVCOL_SPC_BT2020_NCL : AVCOL_SPC_BT709;

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "engine/io/video/film_format.h"
+#include "engine/io/video/video_coding.h"
 
 struct AVFrame;
 struct AVStream;
@@ -17,9 +18,14 @@ FilmFormat stated_format(const AVStream& stream, const AVFrame* frame);
 /// is nothing but the usual: square pixels, 8 bits, BT.709 or nothing stated.
 std::string to_text(const FilmFormat& format);
 
-/// The colours of a film made of pictures of a film with `source`. All as stated, where a coding of
-/// R, G and B can have them; a film that states nothing, or its matrix alone as BT.709, is BT.709,
-/// as players take it.
-FilmColours written_colours(const FilmColours& source);
+/// The coding of colours for pictures of a film with `source`: HEVC with 10 bits for more than 8
+/// and for HDR, H.264 otherwise and where this FFmpeg has no encoder of HEVC.
+VideoCoding colour_coding(const FilmColours& source);
+
+/// The colours of such a film. All as stated, where a coding of R, G and B can have them; a film
+/// that states nothing, or its matrix alone as BT.709, is BT.709, as players take it.
+FilmColours written_colours(const FilmColours& source, VideoCoding coding);
+/// What becomes of it, for a remark.
+const char* written_as(const FilmColours& source);
 
 }  // namespace vantage

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <new>
 #include <string_view>
 #include <utility>
@@ -39,16 +38,14 @@ constexpr std::chrono::seconds kSilence{60};
 /// No protocol: nothing else may be opened.
 constexpr const char* kNothing = "none";
 
-/// An address that may be named.
 struct Scheme {
   std::string_view prefix;
   const char* protocols;                ///< that it uses
   const char* demultiplexer = nullptr;  ///< which connects; null: found by the first bytes
 };
-constexpr std::array<Scheme, 4> kSchemes = {{{"tcp://", "tcp"},
-                                             {"udp://", "udp"},
-                                             {"http://", "http,tcp"},
-                                             {"rtsp://", "rtsp,rtp,udp,tcp", "rtsp"}}};
+/// Of addresses that may be named.
+constexpr std::array<Scheme, 2> kSchemes = {
+    {{"tcp://", "tcp"}, {"rtsp://", "rtsp,rtp,udp,tcp", "rtsp"}}};
 
 const Scheme* scheme_of(std::string_view name) {
   const auto found = std::ranges::find_if(
@@ -142,7 +139,7 @@ void StreamInput::open_pipe() {
   } else {
     descriptor_ = ::open(name_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (descriptor_ < 0) {
-      fail(fmt::format("cannot be opened ({})", std::strerror(errno)));
+      fail(fmt::format("cannot be opened ({})", libav_message(AVERROR(errno))));
     }
     (void)::fcntl(descriptor_, F_SETPIPE_SZ, kPipeBytes);
   }
@@ -185,10 +182,14 @@ int StreamInput::is_over(void* input) {
   return self.is_stopped() || std::chrono::steady_clock::now() > self.deadline_ ? 1 : 0;
 }
 
+void StreamInput::wait_at_most(std::chrono::seconds limit) {
+  limit_ = limit;
+  deadline_ = std::chrono::steady_clock::now() + limit;
+}
+
 void StreamInput::allow_silence() {
   if (kind_ == Kind::kNetwork) {
-    limit_ = kSilence;
-    deadline_ = std::chrono::steady_clock::now() + limit_;
+    wait_at_most(kSilence);
   }
 }
 
@@ -199,8 +200,7 @@ std::string StreamInput::problem(int result) const {
 }
 
 void StreamInput::connect(const char* protocols) {
-  limit_ = kConnecting;
-  deadline_ = std::chrono::steady_clock::now() + limit_;
+  wait_at_most(kConnecting);
   AVDictionary* options = nullptr;
   av_dict_set(&options, "protocol_whitelist", protocols, 0);
   const AVIOInterruptCB callback = {is_over, this};
@@ -244,11 +244,7 @@ LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate 
   }
   // Rates are those that are stated: frames are not awaited to measure them.
   opened->fps_probe_size = 0;
-  allow_silence();
-  if (connects && kind_ == Kind::kNetwork) {
-    limit_ = kConnecting;
-    deadline_ = std::chrono::steady_clock::now() + limit_;
-  }
+  connects&& kind_ == Kind::kNetwork ? wait_at_most(kConnecting) : allow_silence();
   int result =
       libav().avformat_open_input(&opened, connects ? name_.c_str() : "", format, &options);
   av_dict_free(&options);
@@ -262,8 +258,7 @@ LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate 
   if (is_stopped()) {
     throw scheduler::Interrupted();
   }
-  const bool is_late = std::chrono::steady_clock::now() > deadline_;
-  if (result < 0 && (connects || is_late)) {
+  if (result < 0 && (connects || kind_ == Kind::kNetwork)) {
     fail(fmt::format("cannot be opened ({})", problem(result)));
   }
   if (result < 0 || find_video_stream(*input) == nullptr) {

@@ -15,8 +15,8 @@ struct AVIOContext;
 namespace vantage {
 
 /// Whether `name` is read once, as it comes: "-" (standard input), a named pipe, a camera of Linux
-/// (/dev/videoN), an address with tcp://, udp://, rtsp:// or http://. Only such an address opens
-/// the network; what a file or a stream names inside is never opened.
+/// (/dev/videoN), an address with tcp:// or rtsp://. Only such an address opens the network; what a
+/// file or a stream names inside is never opened.
 [[nodiscard]] bool is_stream_name(const std::string& name);
 
 /// Where a stream comes from. Unlike libav's own inputs, it does not wait for data once `stop` is
@@ -24,7 +24,7 @@ namespace vantage {
 class StreamInput {
  public:
   /// `name`: see is_stream_name(); `stop` may be null. A pipe is opened without waiting for who
-  /// writes it; tcp://, udp:// and http:// are connected, within 10 s. So who fills two streams
+  /// writes it; tcp:// is connected, within 10 s. So who fills two streams
   /// finds both open before either is read. Throws Error naming it, scheduler::Interrupted.
   StreamInput(std::string name, const std::atomic<bool>* stop);
   StreamInput(const StreamInput&) = delete;
@@ -39,7 +39,7 @@ class StreamInput {
   /// For messages: "standard input", the pipe, or the address without user and password.
   [[nodiscard]] const std::string& shown_name() const { return shown_name_; }
   [[nodiscard]] bool is_stopped() const { return stop_ != nullptr && stop_->load(); }
-  /// Before each reading from the network: how long it may take.
+  /// Before each reading: the network may be silent for 60 s.
   void allow_silence();
   /// Why reading `result`, FFmpeg's code, failed.
   [[nodiscard]] std::string problem(int result) const;
@@ -49,6 +49,7 @@ class StreamInput {
   static int read_pipe(void* input, std::uint8_t* bytes, int size);
   /// Whether waiting is over, for libav.
   static int is_over(void* input);
+  void wait_at_most(std::chrono::seconds limit);
   void open_pipe();
   void connect(const char* protocols);
   [[noreturn]] void fail(const std::string& problem) const;

@@ -38,9 +38,5 @@ const std::vector<std::pair<std::string_view, VideoCoding>>& grey_coding_names()
 constexpr bool is_grey(VideoCoding coding) {
   return coding != VideoCoding::kH264 && coding != VideoCoding::kHevcColours_10;
 }
-/// Of colours of so many bits. Both are MP4.
-constexpr VideoCoding colour_coding(int bits) {
-  return bits > 8 ? VideoCoding::kHevcColours_10 : VideoCoding::kH264;
-}
 
 }  // namespace vantage

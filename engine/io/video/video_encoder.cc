@@ -39,7 +39,7 @@ EncoderSetup::EncoderSetup(const VideoEncoding& encoding, int width, int height)
     encoder_->sample_aspect_ratio = {aspect.width, aspect.height};
   }
   encoder_->color_range = coding.has_full_range ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
-  const FilmColours colours = written_colours(encoding.format.colours);
+  const FilmColours colours = written_colours(encoding.format.colours, encoding.coding);
   if (!is_grey(encoding.coding)) {
     encoder_->color_range = colours.has_full_range ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
     encoder_->colorspace = static_cast<AVColorSpace>(colours.matrix);
@@ -57,7 +57,7 @@ EncoderSetup::EncoderSetup(const VideoEncoding& encoding, int width, int height)
   }
   av_dict_parse_string(&options_, coding.options, "=", ",", 0);
   if (encoding.coding == VideoCoding::kHevcColours_10 && colours.is_hdr()) {
-    std::string hdr = std::string(av_dict_get(options_, kX265, nullptr, 0)->value) + ":hdr10=1";
+    std::string hdr = std::string(av_dict_get(options_, kX265, nullptr, 0)->value);
     hdr += colours.mastering_display.empty() ? "" : ":master-display=" + colours.mastering_display;
     hdr += colours.light_level.empty() ? "" : ":max-cll=" + colours.light_level;
     av_dict_set(&options_, kX265, hdr.c_str(), 0);

@@ -15,14 +15,9 @@ TwoCameraPairs::TwoCameraPairs(std::unique_ptr<FrameSource> left,
                                std::unique_ptr<FrameSource> right, FramePairing pairing)
     : cameras_{std::move(left), std::move(right)}, pairing_(std::move(pairing)) {
   if (cameras_[0]->film_format() != cameras_[1]->film_format()) {
-    const auto text = [](const FrameSource& side) {
-      const std::string stated = to_text(side.film_format());
-      return stated.empty() ? "no such" : stated;
-    };
-    pairing_.remarks.push_back(
-        fmt::format("the left film states {}, the right one {}: what is written is "
-                    "stated as the left one",
-                    text(*cameras_[0]), text(*cameras_[1])));
+    pairing_.remarks.push_back(fmt::format(
+        "the films state their pictures differently (left: {}; right: {}): the left one counts",
+        to_text(cameras_[0]->film_format()), to_text(cameras_[1]->film_format())));
   }
 }
 
@@ -110,6 +105,9 @@ std::optional<FrameRate> TwoCameraPairs::frame_rate() const {
 
 std::optional<FrameTimes> TwoCameraPairs::frame_times() const {
   const std::size_t camera = timing_camera();
+  if (cameras_[camera]->frame_count() == kUnknownFrames) {
+    return std::nullopt;
+  }
   const std::optional<FrameRate> own_rate = cameras_[camera]->frame_rate();
   std::vector<int> frames;
   for (int pair = 0; pair < pairing_.count; ++pair) {
