@@ -99,6 +99,12 @@ std::unique_ptr<PairSource> packed_pairs(std::unique_ptr<FrameSource> source,
   return std::make_unique<PackedPairs>(std::move(source), packing);
 }
 
+std::unique_ptr<PairSource> in_order(std::unique_ptr<FrameSource> left,
+                                     std::unique_ptr<FrameSource> right, int offset_frames) {
+  FramePairing pairing = pair_in_order({left.get(), right.get()}, offset_frames);
+  return std::make_unique<TwoCameraPairs>(std::move(left), std::move(right), std::move(pairing));
+}
+
 /// All are open before the first is read.
 std::unique_ptr<PairSource> open_streams(const PairSourceOptions& options) {
   const auto input_of = [&](const std::string& name) {
@@ -113,12 +119,10 @@ std::unique_ptr<PairSource> open_streams(const PairSourceOptions& options) {
   if (!options.sequence.empty()) {
     return make_moving_camera_pairs(video_of(input_of(options.sequence)), {.step = options.step});
   }
-  std::unique_ptr<StreamInput> left_input = input_of(options.left);
-  std::unique_ptr<StreamInput> right_input = input_of(options.right);
-  auto left = video_of(std::move(left_input));
-  auto right = video_of(std::move(right_input));
-  FramePairing pairing = pair_in_order({left.get(), right.get()}, options.offset_frames);
-  return std::make_unique<TwoCameraPairs>(std::move(left), std::move(right), std::move(pairing));
+  std::unique_ptr<StreamInput> left = input_of(options.left);
+  std::unique_ptr<StreamInput> right = input_of(options.right);
+  auto left_video = video_of(std::move(left));
+  return in_order(std::move(left_video), video_of(std::move(right)), options.offset_frames);
 }
 
 /// The pairs of MPO and JPS files, each of which is read for either side.
@@ -128,7 +132,7 @@ std::unique_ptr<PairSource> open_views(const PairSourceOptions& options) {
     reading.page = view;
     return open_frame_source(options.stereo, reading);
   };
-  return std::make_unique<TwoCameraPairs>(open_view(0), open_view(1), 0, true);
+  return in_order(open_view(0), open_view(1), 0);
 }
 
 std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
