@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "apps/commands/commands.h"
 #include "apps/process/interrupt.h"
@@ -14,10 +15,12 @@
 #include "apps/run/run_results.h"
 #include "apps/run/run_session.h"
 #include "apps/run/run_settings.h"
+#include "apps/run/run_window.h"
 #include "apps/run/stream_run.h"
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
+#include "engine/io/images/picture_window.h"
 #include "engine/sequence/journal/sequence_join.h"
 #include "engine/simd.h"
 
@@ -113,6 +116,9 @@ int command_run(const Arguments& arguments) {
   RunReport report(settings.command(), reported_settings(settings, job.sequence.match));
   report.start_trace(job.common.trace);
   force_instruction_set(job.common.isa);
+  if (job.show) {
+    require_display();
+  }
   RunSession session = open_run(job, settings, report);
   const EndOfReading end(job.input.live);
   const std::string plan = describe_plan(job, session);
@@ -155,7 +161,9 @@ int command_run(const Arguments& arguments) {
     run.on_progress = [&](const SequenceProgress& now) {
       progress.update(now.frames_done, now.frames_total, now.cells);
     };
-    sequence = SequenceRunner(job.sequence, execution).run(run, layout, journal);
+    sequence = beside_window(job, std::move(run), [&](const SequenceRun& shown) {
+      return SequenceRunner(job.sequence, execution).run(shown, layout, journal);
+    });
   }
   if (sequence.shots) {
     keep_shot_table(layout.journal_folder() / kShotsFile, *sequence.shots);

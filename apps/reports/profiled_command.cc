@@ -106,6 +106,7 @@ void ProfiledCommand::check() {
   }
   auto& run = std::get<RunJob>(job_);
   refuse_if(run.dry_run, "dry-run", "it does no work");
+  refuse_if(run.show, "show", "it takes time");
   complete(run, settings_);
   const std::array<std::pair<bool*, const char*>, 3> openings = {
       {{&run.resume, "resume"}, {&run.overwrite, "overwrite"}, {&run.force, "force"}}};

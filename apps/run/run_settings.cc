@@ -108,6 +108,11 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
       settings, "memory", job.memory_bytes,
       "Memory budget of the plan, such as 800M or 4G; auto: 80 % of what is free here, "
       "limits of control groups included");
+  settings
+      .flag("show", job.show,
+            "Show the newest map, and the first view or the left image, in a window; q, Esc or "
+            "closing it end the run as Ctrl-C does")
+      .changes_results = false;
   settings.flag("dry-run", job.dry_run, "Print the plan and stop");
   settings.choice<ProgressStyle>("progress", job.progress,
                                  {{"auto", ProgressStyle::kAuto},

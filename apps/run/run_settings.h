@@ -23,6 +23,7 @@ struct RunJob : SequenceJob {
   std::optional<Shard> shard;
   std::optional<std::size_t> memory_bytes;
   bool dry_run = false;
+  bool show = false;
   bool resume = false;
   bool overwrite = false;
   bool force = false;

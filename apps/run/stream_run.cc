@@ -10,6 +10,7 @@
 #include "apps/process/tell.h"
 #include "apps/reports/remarks.h"
 #include "apps/run/run_results.h"
+#include "apps/run/run_window.h"
 #include "engine/error.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/sequence/stream_runner.h"
@@ -65,7 +66,9 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
     run.on_progress = [&](const SequenceProgress& now) {
       progress.update(now.frames_done, now.frames_total, now.cells);
     };
-    sequence = run_stream(job.sequence, run, writer, execution);
+    sequence = beside_window(job, std::move(run), [&](const SequenceRun& shown) {
+      return run_stream(job.sequence, shown, writer, execution);
+    });
   }
   report.set_memory(sequence.memory);
   report.add_compute_seconds(sequence.compute_seconds);

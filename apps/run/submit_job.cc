@@ -49,6 +49,7 @@ void check(const SubmitJob& job) {
     throw UsageError("a stream cannot be submitted: tasks read files, expected one");
   }
   refuse_if(writes_stream(job.run), "output -", "tasks write a folder, expected one");
+  refuse_if(job.run.show, "show", "tasks have no screen");
   refuse_if(job.run.dry_run, "dry-run", "'vantage run' prints the plan, --no-submit the scripts");
   refuse_if(!job.run.common.report.empty(), "report",
             "each task writes its own: DIR/.vantage/slurm/report-1.json and so on");

@@ -15,7 +15,7 @@ readonly BUILD_PACKAGES=(
 
 # What some tests need beside that; without these they are skipped.
 # shellcheck disable=SC2034
-readonly TEST_PACKAGES=(slurmctld slurmd slurm-client munge)
+readonly TEST_PACKAGES=(slurmctld slurmd slurm-client munge xvfb xdotool)
 # shellcheck disable=SC2034
 readonly BROWSER_PACKAGES=(chromium)
 
