@@ -375,8 +375,8 @@ class Sequence:
 
     pairs: the path of a list, or an iterable of (left, right), each an array or the path of an
     image: a camera, a queue, a generator. A thread of its own goes through it and copies the
-    images, at most in_flight pairs ahead; exceptions of it are raised here, after the frames before
-    it. Rows and disparities="auto" are found in the first pair. Values "shot" and frames are
+    images: in_flight pairs are in work or done, as many wait; exceptions of it are raised here,
+    after the frames before it. Rows and disparities="auto" are found in the first pair. Values "shot" and frames are
     refused. left and right may be lists of images, too. len() is that of the iterable, or a
     TypeError.
     live: of an iterable: one frame in flight, always of the newest pair; those that came meanwhile
