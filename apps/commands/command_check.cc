@@ -67,13 +67,14 @@ void add_check_settings(Settings& settings, CheckJob& job) {
   settings
       .positional("left", job.left,
                   "Left photograph, or a sequence: a folder, a pattern (left/%06d.png), a glob or "
-                  "a video; alone: pictures that hold both images")
+                  "a video; alone: pictures or a film that hold both images")
       .required = true;
   settings.positional("right", job.right, "Right photograph or sequence");
   add_pair_by_setting(settings, job.input.pair_by);
   settings.choice<StereoPacking>("packing", job.input.packing, stereo_packing_names(),
-                                 "Stereo layout of pictures that hold both images, as of 'run'",
-                                 "none");
+                                 "Stereo layout of pictures that hold both images, as of 'run'; "
+                                 "auto: as the film says");
+  add_deinterlace_setting(settings, job.input.reading);
   settings.input_path("calibration", job.calibration, "FILE",
                       "Cameras, to rectify the pair first: OpenCV, ROS, Kalibr, Middlebury, KITTI "
                       "or other file, or two, A,B");
@@ -98,13 +99,8 @@ void check(CheckJob& job, const Settings& settings) {
     settings.refuse_idle({"packing"}, "with two images or sequences");
     job.input.left = job.left;
     job.input.right = job.right;
-  } else if (job.input.packing || is_stereo_jpeg(job.left)) {
-    job.input.stereo = job.left;
   } else {
-    throw UsageError(
-        "RIGHT is missing; for pictures that hold both images, but MPO and JPS, give --packing, "
-        "such "
-        "as sbsl");
+    job.input.stereo = job.left;
   }
   job.input.validate();
   job.sequence.match.validate();
@@ -216,7 +212,14 @@ int command_check(const Arguments& arguments) {
   check(job, settings);
   CommandWork work(settings, job.common, reported_settings(settings, job.sequence.match));
   SequenceSession session;
-  open_source(job, session);
+  try {
+    open_source(job, session);
+  } catch (const UsageError& error) {
+    if (!job.right.empty() || job.input.packing) {
+      throw;
+    }
+    throw UsageError(fmt::format("RIGHT is missing; {}", error.what()));
+  }
   FramePair pair;
   CheckedPairs checked;
   std::string text = examine(job, settings, work.execution, work.report, session, pair, checked);

@@ -62,8 +62,8 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
       "packing", input.packing, stereo_packing_names(),
       "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
       "above/below, left on top; sbs2l, ab2l half size; irl, icl rows or columns that take turns; "
-      "al pictures that take turns",
-      "none");
+      "al pictures that take turns; auto: as the film says, or its two video tracks");
+  add_deinterlace_setting(settings, input.reading);
   add_raw_video_setting(settings, input.raw_video);
   path("pairs", input.pairs, "FILE.csv",
        "List of image files, lines left,right; a heading may name more columns");
@@ -92,6 +92,11 @@ void add_pair_by_setting(Settings& settings, std::optional<PairBy>& pair_by) {
                           "or time stamps, or their order. A frame without a partner is left out. "
                           "auto: name, of films time; order where these tell nothing and the "
                           "numbers of frames agree");
+}
+
+void add_deinterlace_setting(Settings& settings, PhotographReading& reading) {
+  settings.flag("deinterlace", reading.deinterlaces,
+                "Make whole pictures of the fields of interlaced films (FFmpeg's bwdif)");
 }
 
 void add_white_level_setting(Settings& settings, std::optional<double>& white_level) {

@@ -7,12 +7,15 @@
 
 namespace vantage {
 
-/// --left, --right, --offset, --pair-by, --stereo, --packing, --raw-video, --pairs, --sequence,
-/// --step, --white-level and --orientation, in the group that has begun.
+/// --left, --right, --offset, --pair-by, --stereo, --packing, --deinterlace, --raw-video,
+/// --pairs, --sequence, --step, --white-level and --orientation, in the group that has begun.
 void add_pair_source_settings(Settings& settings, PairSourceOptions& input);
 
 /// --pair-by, in the present group.
 void add_pair_by_setting(Settings& settings, std::optional<PairBy>& pair_by);
+
+/// --deinterlace, in the present group.
+void add_deinterlace_setting(Settings& settings, PhotographReading& reading);
 
 /// --orientation, in the present group.
 void add_reading_settings(Settings& settings, PhotographReading& reading);

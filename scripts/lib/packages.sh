@@ -6,7 +6,7 @@
 readonly BUILD_PACKAGES=(
   g++ cmake ninja-build pkg-config ccache mold
   libtbb-dev libopencv-dev libeigen3-dev libhwy-dev libhwloc-dev
-  libavformat-dev libavcodec-dev libavutil-dev libswscale-dev libswresample-dev
+  libavformat-dev libavcodec-dev libavfilter-dev libavutil-dev libswscale-dev libswresample-dev
   libdeflate-dev libjpeg-dev libpng-dev libtiff-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
   libgtest-dev libgmock-dev libbenchmark-dev

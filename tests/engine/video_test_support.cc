@@ -81,9 +81,10 @@ void write_sound(AVFormatContext& output, const Sound& sound) {
   }
 }
 
-/// put_numbered_video() with options of x264.
-void put_grouped_video(const std::filesystem::path& path, int frames, FrameRate rate,
-                       const std::string& x264_options) {
+}  // namespace
+
+void put_x264_video(const std::filesystem::path& path, int frames, FrameRate rate,
+                    const std::string& x264_options) {
   silence_libav();
   const FrameConversion convert = make_frame_conversion(VideoCoding::kH264, 64, 48);
   const LibavCodec encoder(avcodec_alloc_context3(avcodec_find_encoder_by_name("libx264")));
@@ -122,16 +123,46 @@ void put_grouped_video(const std::filesystem::path& path, int frames, FrameRate 
   require(av_write_trailer(output.get()));
 }
 
-}  // namespace
-
 void put_open_groups_video(const std::filesystem::path& path, int frames, FrameRate rate) {
-  put_grouped_video(path, frames, rate, "open_gop=1:keyint=6:bframes=2:b-adapt=0:scenecut=0");
+  put_x264_video(path, frames, rate, "open_gop=1:keyint=6:bframes=2:b-adapt=0:scenecut=0");
 }
 
 void put_closed_groups_video(const std::filesystem::path& path, int frames, FrameRate rate,
                              int group) {
-  put_grouped_video(path, frames, rate,
-                    "keyint=" + std::to_string(group) + ":bframes=3:b-adapt=0:scenecut=0");
+  put_x264_video(path, frames, rate,
+                 "keyint=" + std::to_string(group) + ":bframes=3:b-adapt=0:scenecut=0");
+}
+
+void put_tracks(const std::vector<std::filesystem::path>& from, const std::filesystem::path& to,
+                const std::string& container, const std::function<void(AVStream&, int)>& change) {
+  AVFormatContext* opened = nullptr;
+  require(avformat_alloc_output_context2(&opened, nullptr, container.c_str(), nullptr));
+  const std::unique_ptr<AVFormatContext, Close> output(opened);
+  output->strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;
+  require(avio_open(&output->pb, to.c_str(), AVIO_FLAG_WRITE));
+  std::vector<LibavInput> inputs;
+  for (const auto& path : from) {
+    inputs.push_back(open_media_file(path));
+    const AVStream& source = *find_video_stream(*inputs.back());
+    AVStream* target = avformat_new_stream(output.get(), nullptr);
+    require(avcodec_parameters_copy(target->codecpar, source.codecpar));
+    target->codecpar->codec_tag = 0;
+    target->time_base = source.time_base;
+    target->avg_frame_rate = source.avg_frame_rate;
+    change(*target, target->index);
+  }
+  require(avformat_write_header(output.get(), nullptr));
+  const LibavPacket packet = make_libav_packet();
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const AVStream& source = *find_video_stream(*inputs[i]);
+    while (av_read_frame(inputs[i].get(), packet.get()) >= 0) {
+      packet->stream_index = static_cast<int>(i);
+      packet->pos = -1;
+      av_packet_rescale_ts(packet.get(), source.time_base, output->streams[i]->time_base);
+      require(av_interleaved_write_frame(output.get(), packet.get()));
+    }
+  }
+  require(av_write_trailer(output.get()));
 }
 
 std::vector<VideoPacket> video_packets(const std::filesystem::path& path) {

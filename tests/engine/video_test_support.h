@@ -3,6 +3,8 @@
 #include "engine/io/video/video_io.h"
 #include "tests/engine/engine_test.h"
 
+struct AVStream;
+
 namespace vantage {
 inline namespace test {
 
@@ -84,6 +86,16 @@ void put_open_groups_video(const std::filesystem::path& path, int frames, FrameR
 /// between them.
 void put_closed_groups_video(const std::filesystem::path& path, int frames, FrameRate rate,
                              int group);
+
+/// The same frames again, with options of x264: "tff=1" makes them interlaced.
+void put_x264_video(const std::filesystem::path& path, int frames, FrameRate rate,
+                    const std::string& x264_options);
+
+/// Copies the videos `from` into one file, a track each, which `change` may tag.
+void put_tracks(
+    const std::vector<std::filesystem::path>& from, const std::filesystem::path& to,
+    const std::string& container,
+    const std::function<void(AVStream&, int)>& change = [](AVStream&, int) {});
 
 /// A packet of a video, in decoding order.
 struct VideoPacket {

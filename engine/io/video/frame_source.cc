@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <utility>
 
 #include "engine/error.h"
@@ -35,6 +36,9 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
                                                const PhotographReading& reading) {
   namespace fs = std::filesystem;
   const auto with_reading = [&](std::unique_ptr<ImageSequence> images) {
+    if (reading.deinterlaces) {
+      throw UsageError(fmt::format("deinterlace has no effect on the images of {}", spec));
+    }
     images->set_reading(reading);
     return images;
   };
@@ -55,7 +59,18 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
       return with_reading(std::make_unique<ListedImages>(spec, path.parent_path(),
                                                          std::vector<fs::path>{path.filename()}));
     }
-    return std::make_unique<VideoFrames>(spec);
+    return std::make_unique<VideoFrames>(spec, kMainVideo, reading);
+  }
+  if (const std::size_t mark = spec.rfind('#');
+      mark != std::string::npos && fs::is_regular_file(spec.substr(0, mark), ignored)) {
+    int track = -1;
+    const char* end = spec.data() + spec.size();
+    const auto [parsed, error] = std::from_chars(spec.data() + mark + 1, end, track);
+    if (error != std::errc() || parsed != end || track < 0) {
+      throw UsageError(
+          fmt::format("{}: expected the number of a video track after #, from 0", spec));
+    }
+    return std::make_unique<VideoFrames>(spec.substr(0, mark), track, reading);
   }
   if (spec.find('%') != std::string::npos) {
     return with_reading(open_image_pattern(spec));

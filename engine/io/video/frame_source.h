@@ -9,6 +9,7 @@
 #include "engine/image/photograph.h"
 #include "engine/image/photograph_reading.h"
 #include "engine/io/video/film_format.h"
+#include "engine/io/video/film_properties.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/video_picture.h"
 
@@ -80,6 +81,13 @@ class FrameSource {
   /// The video file, which may hold sound; empty for image files.
   [[nodiscard]] virtual std::filesystem::path video_file() const { return {}; }
 
+  /// What a video says of itself; null for image files.
+  [[nodiscard]] virtual const FilmProperties* film() const { return nullptr; }
+  /// Of an interlaced video: its fields are different pictures.
+  virtual void take_fields_apart() {}
+  /// On all its frames, one line each: what was assumed, turned, mended.
+  [[nodiscard]] virtual std::vector<std::string> remarks() const { return {}; }
+
   /// The files that frames are read from.
   [[nodiscard]] virtual std::vector<std::filesystem::path> files() const { return {video_file()}; }
 
@@ -91,13 +99,13 @@ class FrameSource {
 /// Opens the source `spec`; an existing file or folder of that name takes precedence:
 /// - a folder: all image files in it, in natural order (frame2 before frame10), without hidden
 /// ones;
-/// - a file: one image, or a video;
+/// - a file: one image, or a video; "film.mkv#1": the second one of its videos;
 /// - a printf pattern with one %d or %0Nd in the file name ("left/%06d.png"): from the smallest
 /// existing number to the largest; a missing number between them is a bad frame;
 /// - a glob pattern in the file name ("left/*.png", with * ? and [a-z]), in natural order.
 ///
 /// Throws Error when nothing matches, a folder holds no image, or a video does not open; UsageError
-/// for a malformed pattern.
+/// for a malformed pattern, or where images shall be deinterlaced.
 std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
                                                const PhotographReading& reading = {});
 

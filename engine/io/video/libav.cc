@@ -163,7 +163,28 @@ LibavInput open_media_file(const fs::path& path) {
   return input;
 }
 
-AVStream* find_video_stream(AVFormatContext& input) {
+std::vector<AVStream*> video_streams(AVFormatContext& input) {
+  std::vector<AVStream*> videos;
+  for (unsigned i = 0; i < input.nb_streams; ++i) {
+    AVStream* stream = input.streams[i];
+    if (stream->codecpar->codec_type == AVMEDIA_TYPE_VIDEO &&
+        (stream->disposition & AV_DISPOSITION_ATTACHED_PIC) == 0) {
+      videos.push_back(stream);
+    }
+  }
+  return videos;
+}
+
+std::string name_of_track(const fs::path& path, int track) {
+  return track == kMainVideo ? path.string() : fmt::format("{}#{}", path.string(), track);
+}
+
+AVStream* find_video_stream(AVFormatContext& input, int track) {
+  if (track != kMainVideo) {
+    const std::vector<AVStream*> videos = video_streams(input);
+    return static_cast<std::size_t>(track) < videos.size() ? videos[static_cast<std::size_t>(track)]
+                                                           : nullptr;
+  }
   AVStream* stream = find_stream(input, AVMEDIA_TYPE_VIDEO);
   const bool cover = stream != nullptr && (stream->disposition & AV_DISPOSITION_ATTACHED_PIC) != 0;
   return cover ? nullptr : stream;

@@ -3,9 +3,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 struct AVAudioFifo;
 struct AVCodecContext;
+struct AVFilterContext;
+struct AVFilterGraph;
 struct AVFormatContext;
 struct AVFrame;
 struct AVPacket;
@@ -19,6 +22,7 @@ namespace vantage {
 struct LibavFree {
   void operator()(AVAudioFifo* samples) const noexcept;
   void operator()(AVCodecContext* codec) const noexcept;
+  void operator()(AVFilterGraph* graph) const noexcept;
   void operator()(AVFormatContext* input) const noexcept;
   void operator()(AVFrame* frame) const noexcept;
   void operator()(AVPacket* packet) const noexcept;
@@ -27,6 +31,7 @@ struct LibavFree {
 };
 
 using LibavCodec = std::unique_ptr<AVCodecContext, LibavFree>;
+using LibavFilterGraph = std::unique_ptr<AVFilterGraph, LibavFree>;
 using LibavFrame = std::unique_ptr<AVFrame, LibavFree>;
 using LibavInput = std::unique_ptr<AVFormatContext, LibavFree>;
 using LibavPacket = std::unique_ptr<AVPacket, LibavFree>;
@@ -56,8 +61,14 @@ inline constexpr const char* kVideoContainers =
 /// if its container allows it. Throws Error when the file is missing, empty or not a video.
 LibavInput open_media_file(const std::filesystem::path& path);
 
-/// Its only or main video; null when there is none other than cover art.
-AVStream* find_video_stream(AVFormatContext& input);
+/// Its videos in the order of the file, without cover art.
+std::vector<AVStream*> video_streams(AVFormatContext& input);
+/// Number of the only or main one instead of an index.
+constexpr int kMainVideo = -1;
+/// "film.mkv", "film.mkv#1".
+std::string name_of_track(const std::filesystem::path& path, int track);
+/// That of video_streams(), or its only or main video; null when there is none.
+AVStream* find_video_stream(AVFormatContext& input, int track = kMainVideo);
 /// Its only or main sound; null when there is none.
 AVStream* find_sound_stream(AVFormatContext& input);
 /// Discards the packets of all other streams, except those already read by opening the file.

@@ -140,7 +140,7 @@ bool StreamedVideo::decode_next(VideoPicture& picture) {
         (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
       fail_damaged(result < 0 ? result : AVERROR_INVALIDDATA);
     }
-    picture = VideoPicture(*frame_, converters_, describe(decoded_), lossy_codec_);
+    picture = VideoPicture(*frame_, converters_, describe(decoded_), {.lossy_codec = lossy_codec_});
     ++decoded_;
     return true;
   }

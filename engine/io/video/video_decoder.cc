@@ -71,8 +71,13 @@ std::string name_of_lossy_codec(const AVStream& stream) {
   return codec != nullptr && (codec->props & AV_CODEC_PROP_LOSSY) != 0 ? codec->name : "";
 }
 
-VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads)
-    : threads_(threads), input_(open_media_file(path)), stream_(find_video_stream(*input_)) {
+VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads, int track)
+    : threads_(threads), input_(open_media_file(path)), stream_(find_video_stream(*input_, track)) {
+  if (stream_ == nullptr && track != kMainVideo) {
+    const std::size_t tracks = video_streams(*input_).size();
+    throw Error(fmt::format("{}: has {} video track{}, expected #0 to #{}", path.string(), tracks,
+                            tracks == 1 ? "" : "s", tracks == 0 ? 0 : tracks - 1));
+  }
   if (stream_ == nullptr) {
     throw Error(fmt::format("{}: holds no video", path.string()));
   }
@@ -92,12 +97,52 @@ VideoDecoder::VideoDecoder(const std::filesystem::path& path, int threads)
   codec_ = open_decoder(*stream_, threads_, path.string());
 }
 
-void VideoDecoder::read_packet() {
+int VideoDecoder::read_from_file(AVPacket& packet) {
+  int result = 0;
   do {
-    libav().av_packet_unref(packet_.get());
-    read_result_ = libav().av_read_frame(input_.get(), packet_.get());
-  } while (read_result_ >= 0 && packet_->stream_index != stream_->index);
+    libav().av_packet_unref(&packet);
+    result = libav().av_read_frame(input_.get(), &packet);
+  } while (result >= 0 && packet.stream_index != stream_->index);
+  return result;
+}
+
+void VideoDecoder::read_packet() {
+  if (!ahead_.empty()) {
+    packet_ = std::move(ahead_.front());
+    ahead_.pop_front();
+  } else {
+    read_result_ = read_from_file(*packet_);
+  }
   packet_is_cut_off_ = read_result_ >= 0 && cut_->is_cut_off(*packet_);
+}
+
+std::string VideoDecoder::change_of_size(const AVPacket& packet) const {
+  const LibavCodec codec = open_decoder(*stream_, 1, "");
+  const LibavFrame frame = make_libav_frame();
+  libav().avcodec_send_packet(codec.get(), &packet);
+  libav().avcodec_send_packet(codec.get(), nullptr);
+  const AVCodecParameters& before = *stream_->codecpar;
+  if (libav().avcodec_receive_frame(codec.get(), frame.get()) < 0 ||
+      (frame->width == before.width && frame->height == before.height)) {
+    return {};
+  }
+  return fmt::format("the size of the pictures changes there, from {}x{} to {}x{}", before.width,
+                     before.height, frame->width, frame->height);
+}
+
+bool VideoDecoder::is_before_another_size() {
+  constexpr std::size_t kMaxAhead = 32;
+  while (read_result_ >= 0 && ahead_.size() < kMaxAhead) {
+    LibavPacket packet = make_libav_packet();
+    if (read_from_file(*packet) < 0) {
+      break;
+    }
+    ahead_.push_back(std::move(packet));
+    if ((ahead_.back()->flags & AV_PKT_FLAG_KEY) != 0) {
+      break;
+    }
+  }
+  return !ahead_.empty() && !change_of_size(*ahead_.back()).empty();
 }
 
 bool VideoDecoder::start_at(const PossibleStart& start) {
@@ -170,7 +215,13 @@ void VideoDecoder::feed() {
   if (!packet_is_cut_off_) {
     packet_time_ = packet_->pts != AV_NOPTS_VALUE ? packet_->pts : packet_->dts;
     codec_->err_recognition = cut_->misses_frames() ? 0 : AV_EF_EXPLODE;
-    if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) {
+    const bool is_corrupt = (packet_->flags & AV_PKT_FLAG_CORRUPT) != 0;
+    is_spliced_ = is_spliced_ || (is_corrupt && is_before_another_size());
+    const bool is_key = (packet_->flags & AV_PKT_FLAG_KEY) != 0;
+    if (const std::string change = is_spliced_ && is_key ? change_of_size(*packet_) : "";
+        !change.empty()) {
+      stop_feeding(change, std::numeric_limits<std::int64_t>::max(), FoundBy::kFile);
+    } else if (is_corrupt && !is_spliced_) {
       const bool at_end = libav().avio_feof(input_->pb) != 0;
       stop_feeding(at_end ? "the file ends inside it" : "the file is damaged there", packet_time_,
                    FoundBy::kFile);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -25,10 +26,12 @@ class VideoDecoder {
   /// With one thread all frames before a damaged one are returned; with more, the frames in flight
   /// are lost if the decoder finds the damage. A video cut so that decoders miss frames is always
   /// decoded with one thread. Throws Error when the file has no video, or none that can be decoded.
-  VideoDecoder(const std::filesystem::path& path, int threads);
+  VideoDecoder(const std::filesystem::path& path, int threads, int track = kMainVideo);
 
   [[nodiscard]] AVFormatContext& input() { return *input_; }
   [[nodiscard]] AVStream& stream() { return *stream_; }
+  /// That will be decoded next; empty after the last one.
+  [[nodiscard]] const AVPacket& next_packet() const { return *packet_; }
 
   /// Starts decoding at that packet; call it before any decoding. False when that is not possible,
   /// see begins_afresh(): try another one.
@@ -47,6 +50,11 @@ class VideoDecoder {
   Step check_frame();
   /// Reads the next packet of the video, or the reason why there is none.
   void read_packet();
+  int read_from_file(AVPacket& packet);
+  /// Whether the damage that the container reports is a splice: pictures of another size follow.
+  bool is_before_another_size();
+  /// "the size of the pictures changes there, from … to …", or empty: it does not at this packet.
+  std::string change_of_size(const AVPacket& packet) const;
   /// Sends the packet read, or the end of the stream, to the decoder and reads the next one.
   void feed();
   enum class FoundBy { kDecoder, kFile };
@@ -61,7 +69,9 @@ class VideoDecoder {
   LibavFrame frame_ = make_libav_frame();
   LibavPacket packet_ = make_libav_packet();
   std::optional<CutVideo> cut_;
-  int read_result_ = 0;  ///< FFmpeg's result for the packet
+  int read_result_ = 0;            ///< FFmpeg's result for the packet
+  std::deque<LibavPacket> ahead_;  ///< packets after it that were looked at
+  bool is_spliced_ = false;        ///< one of the next packets has another size
   bool packet_is_cut_off_ = false;
   std::int64_t packet_time_ = 0;  ///< presentation time of the last packet sent to the decoder
   std::string problem_;

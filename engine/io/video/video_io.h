@@ -7,13 +7,14 @@
 #include "engine/image/photograph.h"
 #include "engine/io/video/film_format.h"
 #include "engine/io/video/frame_rate.h"
+#include "engine/io/video/libav.h"
 #include "engine/io/video/video_coding.h"
 #include "engine/io/video/video_picture.h"
 
 namespace vantage {
 
-/// Reads the frames of a video file in order of presentation, in their stored size (a rotation flag
-/// is ignored): RGB, 8-bit, or 16-bit if the stream has more bits. Grey streams have one channel,
+/// Reads the frames of a video file in order of presentation, as stored unless set_handling() says
+/// otherwise: RGB, 8-bit, or 16-bit if the stream has more bits. Grey streams have one channel,
 /// if their decoder reports it. Colours are converted by the flagged matrix, range and chroma
 /// position, and rounded; if unspecified, they are BT.601 below 720 rows, else BT.709, with limited
 /// range. Half as many threads as processors decode, up to four; they do not affect the result, not
@@ -23,9 +24,13 @@ class VideoReader {
  public:
   /// Throws Error when the file is missing, not a video, an MP4 or MOV with a truncated index, or
   /// has implausibly large frames. Other truncated files can be read up to the cut.
-  explicit VideoReader(const std::filesystem::path& path);
+  explicit VideoReader(const std::filesystem::path& path, int track = kMainVideo);
   ~VideoReader();
 
+  /// Of the pictures that follow.
+  void set_handling(const PictureHandling& handling);
+
+  /// As stored.
   [[nodiscard]] int width() const;
   [[nodiscard]] int height() const;
   /// Empty if the container does not specify it.

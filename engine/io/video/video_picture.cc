@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/image/stereo_packing.h"
+#include "engine/io/video/libav_filter.h"
 #include "engine/io/video/libav_scaler.h"
 
 extern "C" {
@@ -63,21 +65,81 @@ LossyCoding coding_of_frame(const AVFrame& frame, const std::string& lossy_codec
   return coding;
 }
 
+LibavFrame another_reference(const AVFrame& frame) {
+  LibavFrame reference(av_frame_clone(&frame));
+  if (reference == nullptr) {
+    throw std::bad_alloc();
+  }
+  return reference;
+}
+
+/// `frame` with the lines of its second field interpolated, in space and from its neighbours, which
+/// may be null. Each picture has a chain of its own, so it is the same wherever decoding began.
+LibavFrame deinterlaced(const AVFrame* before, const AVFrame& frame, const AVFrame* after,
+                        bool only_if_flagged) {
+  LibavFilter filter(only_if_flagged ? "bwdif=mode=send_frame:deint=interlaced"
+                                     : "bwdif=mode=send_frame:deint=all",
+                     frame);
+  const auto fits = [&](const AVFrame* other) {
+    return other != nullptr && other->width == frame.width && other->height == frame.height &&
+           other->format == frame.format;
+  };
+  const bool has_before = fits(before);
+  if (has_before) {
+    filter.put(*before);
+  }
+  filter.put(frame);
+  if (fits(after)) {
+    filter.put(*after);
+  }
+  filter.end();
+  LibavFrame result = filter.take();
+  if (has_before) {
+    result = filter.take();
+  }
+  if (result == nullptr) {
+    throw Error("it cannot be deinterlaced");
+  }
+  return result;
+}
+
+/// Every second line of an interlaced frame.
+LibavFrame field_of(const AVFrame& frame, int number) {
+  LibavFrame field = another_reference(frame);
+  for (int plane = 0; plane < AV_NUM_DATA_POINTERS && field->data[plane] != nullptr; ++plane) {
+    field->data[plane] += number * std::ptrdiff_t{field->linesize[plane]};
+    field->linesize[plane] *= 2;
+  }
+  if (field->colorspace == AVCOL_SPC_UNSPECIFIED) {
+    // By the height of the whole frame, see FrameToPhotograph.
+    field->colorspace = frame.height < 720 ? AVCOL_SPC_SMPTE170M : AVCOL_SPC_BT709;
+  }
+  field->height /= 2;
+  return field;
+}
+
 }  // namespace
 
 VideoPicture::VideoPicture(const AVFrame& frame, std::shared_ptr<PictureConverters> converters,
-                           std::string name, std::string lossy_codec)
-    : frame_(av_frame_clone(&frame)),
+                           std::string name, PictureHandling handling)
+    : frame_(another_reference(frame)),
       converters_(std::move(converters)),
       name_(std::move(name)),
-      lossy_codec_(std::move(lossy_codec)) {
-  if (frame_ == nullptr) {
-    throw std::bad_alloc();
-  }
-}
+      handling_(std::move(handling)) {}
 
 VideoPicture VideoPicture::share() const {
-  return is_empty() ? VideoPicture() : VideoPicture(*frame_, converters_, name_, lossy_codec_);
+  if (is_empty()) {
+    return {};
+  }
+  VideoPicture shared(*frame_, converters_, name_, handling_);
+  shared.before_ = before_ == nullptr ? nullptr : another_reference(*before_);
+  shared.after_ = after_ == nullptr ? nullptr : another_reference(*after_);
+  return shared;
+}
+
+void VideoPicture::set_neighbours(const VideoPicture& before, const VideoPicture& after) {
+  before_ = before.is_empty() ? nullptr : another_reference(*before.frame_);
+  after_ = after.is_empty() ? nullptr : another_reference(*after.frame_);
 }
 
 std::size_t VideoPicture::bytes() const {
@@ -89,18 +151,34 @@ std::size_t VideoPicture::bytes() const {
 }
 
 void VideoPicture::convert(Photograph& photograph) {
-  const LibavFrame frame = std::move(frame_);
+  using Deinterlacing = PictureHandling::Deinterlacing;
+  LibavFrame frame = std::move(frame_);
   const auto converter = converters_->borrow();
   photograph.origin = {};
   photograph.left_out = {};
-  if (!lossy_codec_.empty()) {
-    photograph.origin.coding = coding_of_frame(*frame, lossy_codec_);
+  if (!handling_.lossy_codec.empty()) {
+    photograph.origin.coding = coding_of_frame(*frame, handling_.lossy_codec);
   }
   try {
-    converter->convert(*frame, photograph);
+    if (handling_.deinterlacing != Deinterlacing::kNone) {
+      frame = deinterlaced(before_.get(), *frame, after_.get(),
+                           handling_.deinterlacing == Deinterlacing::kFlaggedFrames);
+    }
+    if (handling_.takes_fields_apart && frame->interlaced_frame != 0 && frame->height % 4 == 0) {
+      Photograph upper;
+      Photograph lower;
+      converter->convert(*field_of(*frame, 0), upper);
+      converter->convert(*field_of(*frame, 1), lower);
+      pack_stereo(upper, lower, {.layout = StereoLayout::kRows}, photograph);
+    } else {
+      converter->convert(*frame, photograph);
+    }
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", name_, error.what()));
   }
+  before_.reset();
+  after_.reset();
+  turn_upright(photograph, handling_.turn);
 }
 
 }  // namespace vantage

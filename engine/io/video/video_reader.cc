@@ -35,12 +35,17 @@ int decoder_threads() {
 }  // namespace
 
 struct VideoReader::State {
-  explicit State(const std::filesystem::path& file)
-      : path(file), decoder(std::make_unique<VideoDecoder>(file, decoder_threads())) {}
+  State(const std::filesystem::path& file, int wanted_track)
+      : path(file), track(wanted_track), decoder(open(decoder_threads())) {}
+
+  [[nodiscard]] std::unique_ptr<VideoDecoder> open(int threads) const {
+    return std::make_unique<VideoDecoder>(path, threads, track);
+  }
 
   std::filesystem::path path;
+  int track;
   std::unique_ptr<VideoDecoder> decoder;
-  std::string lossy_codec;  ///< empty: lossless
+  PictureHandling handling;
   int width = 0;
   int height = 0;
   FilmFormat format;
@@ -53,7 +58,7 @@ struct VideoReader::State {
 
   [[noreturn]] void fail(const std::string& problem) {
     ended = true;
-    throw Error(fmt::format("{}: {}", path.string(), problem));
+    throw Error(fmt::format("{}: {}", name_of_track(path, track), problem));
   }
 
   [[noreturn]] void fail_cut_off() {
@@ -99,7 +104,7 @@ std::optional<int> VideoReader::State::start_within(int first, int last, Which w
       return std::nullopt;
     }
     if (!begun) {
-      begun = std::make_unique<VideoDecoder>(path, threads);
+      begun = open(threads);
     }
     const auto start = which == Which::kFirst ? begin : end - 1;
     if (begun->start_at(*start)) {
@@ -113,7 +118,7 @@ std::optional<int> VideoReader::State::start_within(int first, int last, Which w
 
 void VideoReader::State::start_up_to(int last, int threads) {
   if (!start_within(0, last, Which::kLast, threads)) {
-    decoder = std::make_unique<VideoDecoder>(path, threads);
+    decoder = open(threads);
     frames_read = 0;
   }
 }
@@ -151,8 +156,10 @@ bool VideoReader::State::advance() {
   }
   const AVFrame& frame = decoder->frame();
   if (frame.width != width || frame.height != height) {
-    fail(fmt::format("frame {} is {}x{}, expected {}x{} as at the start", frames_read, frame.width,
-                     frame.height, width, height));
+    fail(
+        fmt::format("frame {} is {}x{}, expected {}x{} as at the start: the size of the pictures "
+                    "changes there",
+                    frames_read, frame.width, frame.height, width, height));
   }
   note_time();
   const std::int64_t time = frame.best_effort_timestamp;
@@ -182,15 +189,15 @@ void VideoReader::State::note_time() {
   frame_seconds = seconds;
 }
 
-VideoReader::VideoReader(const std::filesystem::path& path)
-    : state_(std::make_unique<State>(path)) {
+VideoReader::VideoReader(const std::filesystem::path& path, int track)
+    : state_(std::make_unique<State>(path, track)) {
   VideoDecoder& decoder = *state_->decoder;
   state_->width = decoder.stream().codecpar->width;
   state_->height = decoder.stream().codecpar->height;
-  state_->lossy_codec = name_of_lossy_codec(decoder.stream());
+  state_->handling.lossy_codec = name_of_lossy_codec(decoder.stream());
   state_->format = stated_format(decoder.stream(), nullptr);
   if (state_->format.colours.is_hdr()) {
-    VideoDecoder first(path, 1);
+    VideoDecoder first(path, 1, track);
     if (first.next() == VideoDecoder::Step::kFrame) {
       state_->format = stated_format(first.stream(), &first.frame());
     }
@@ -199,6 +206,12 @@ VideoReader::VideoReader(const std::filesystem::path& path)
 }
 
 VideoReader::~VideoReader() = default;
+
+void VideoReader::set_handling(const PictureHandling& handling) {
+  const std::string codec = std::move(state_->handling.lossy_codec);
+  state_->handling = handling;
+  state_->handling.lossy_codec = codec;
+}
 
 int VideoReader::width() const { return state_->width; }
 int VideoReader::height() const { return state_->height; }
@@ -216,9 +229,10 @@ bool VideoReader::read(VideoPicture& picture) {
   if (!state.advance()) {
     return false;
   }
-  picture = VideoPicture(state.decoder->frame(), state.converters,
-                         fmt::format("{}: frame {}", state.path.string(), state.frames_read - 1),
-                         state.lossy_codec);
+  picture = VideoPicture(
+      state.decoder->frame(), state.converters,
+      fmt::format("{}: frame {}", name_of_track(state.path, state.track), state.frames_read - 1),
+      state.handling);
   return true;
 }
 

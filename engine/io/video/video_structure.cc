@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -138,6 +139,38 @@ void check_sample_tables(SparseFile& file, std::uint64_t begin, std::uint64_t en
     }
     if (level + 1 < kMaxLevels && holds_boxes(box->type)) {
       check_sample_tables(file, box->begin, std::min(box->end, end), level + 1);
+    }
+    offset = box->end;
+  }
+}
+
+/// Bytes of a box before the boxes in it, from the movie down to the descriptions of its samples;
+/// empty: it holds none of interest.
+std::optional<std::uint64_t> bytes_before_boxes(const std::string& type) {
+  constexpr std::uint64_t kVisualSampleEntry = 78;
+  for (const char* entry : {"hvc1", "hev1", "avc1", "avc3", "mvc1", "mvc2"}) {
+    if (type == entry) {
+      return kVisualSampleEntry;
+    }
+  }
+  const bool holds_only_boxes =
+      holds_boxes(type) || type == "vexu" || type == "eyes" || type == "pack";
+  return type == "stsd"     ? std::optional<std::uint64_t>(8)
+         : holds_only_boxes ? std::optional<std::uint64_t>(0)
+                            : std::nullopt;
+}
+
+void gather_boxes(SparseFile& file, std::uint64_t begin, std::uint64_t end, int level,
+                  std::set<std::string>& types) {
+  constexpr int kMaxLevels = 10;
+  for (std::uint64_t offset = begin; offset < end;) {
+    const std::optional<Box> box = whole_box(file, offset);
+    if (!box) {
+      return;
+    }
+    types.insert(box->type);
+    if (const auto before = bytes_before_boxes(box->type); before && level < kMaxLevels) {
+      gather_boxes(file, box->begin + *before, std::min(box->end, end), level + 1, types);
     }
     offset = box->end;
   }
@@ -288,6 +321,16 @@ void check_video_tables(const std::filesystem::path& path) {
       return;
     }
   }
+}
+
+std::string_view further_views_in_boxes(const std::filesystem::path& path) {
+  SparseFile file(path);
+  std::set<std::string> types;
+  if (file.holds(0, 8) && file.text(4, 4) == "ftyp") {
+    gather_boxes(file, 0, file.size(), 0, types);
+  }
+  const bool tells_eyes = types.contains("vexu") && !types.contains("pkin");
+  return types.contains("lhvC") || tells_eyes ? "MV-HEVC" : types.contains("mvcC") ? "MVC" : "";
 }
 
 void check_video_is_whole(const std::filesystem::path& path) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 namespace vantage {
 
@@ -22,6 +23,10 @@ VideoExtent find_video_extent(const std::filesystem::path& path);
 /// Throws Error when the tables of an MP4 or MOV promise more samples than a file of its size can
 /// hold, for each of which readers would allocate memory.
 void check_video_tables(const std::filesystem::path& path);
+
+/// "MV-HEVC" or "MVC" where the boxes of an MP4 or MOV describe further views beside the one that
+/// FFmpeg decodes, and no packing of both in one picture; else empty.
+std::string_view further_views_in_boxes(const std::filesystem::path& path);
 
 /// Throws Error when it is incomplete.
 void check_video_is_whole(const std::filesystem::path& path);

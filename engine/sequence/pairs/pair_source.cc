@@ -10,7 +10,6 @@
 
 #include "engine/error.h"
 #include "engine/image/orientation.h"
-#include "engine/io/images/stereo_jpeg.h"
 #include "engine/io/video/image_sequence.h"
 #include "engine/io/video/raw_video.h"
 #include "engine/io/video/stream_input.h"
@@ -18,9 +17,9 @@
 #include "engine/sequence/pairs/live_pairs.h"
 #include "engine/sequence/pairs/masked_pairs.h"
 #include "engine/sequence/pairs/moving_camera_pairs.h"
-#include "engine/sequence/pairs/packed_pairs.h"
 #include "engine/sequence/pairs/pair_list.h"
 #include "engine/sequence/pairs/several_cameras.h"
+#include "engine/sequence/pairs/stereo_film.h"
 #include "engine/sequence/pairs/streamed_pairs.h"
 #include "engine/sequence/pairs/supplied_pairs.h"
 #include "engine/sequence/pairs/two_camera_pairs.h"
@@ -90,15 +89,6 @@ int taken_step(const FrameStep& every, const PairSource& pairs) {
   return static_cast<int>(std::clamp(frames, 1.0, static_cast<double>(FrameStep::kMaxPairs)));
 }
 
-std::unique_ptr<PairSource> packed_pairs(std::unique_ptr<FrameSource> source,
-                                         StereoPacking packing) {
-  if (packing.layout == StereoLayout::kFrames) {
-    const SuccessiveFrames turns{.step = packing.right_first ? -1 : 1, .distance = 2};
-    return make_moving_camera_pairs(std::move(source), turns);
-  }
-  return std::make_unique<PackedPairs>(std::move(source), packing);
-}
-
 std::unique_ptr<PairSource> in_order(std::unique_ptr<FrameSource> left,
                                      std::unique_ptr<FrameSource> right, int offset_frames) {
   FramePairing pairing = pair_in_order({left.get(), right.get()}, offset_frames);
@@ -114,7 +104,7 @@ std::unique_ptr<PairSource> open_streams(const PairSourceOptions& options) {
     return std::make_unique<StreamedVideo>(std::move(input), options.raw_video, options.raw_rate);
   };
   if (!options.stereo.empty()) {
-    return packed_pairs(video_of(input_of(options.stereo)), *options.packing);
+    return make_packed_pairs(video_of(input_of(options.stereo)), *options.packing);
   }
   if (!options.sequence.empty()) {
     return make_moving_camera_pairs(video_of(input_of(options.sequence)), {.step = options.step});
@@ -125,16 +115,6 @@ std::unique_ptr<PairSource> open_streams(const PairSourceOptions& options) {
   return in_order(std::move(left_video), video_of(std::move(right)), options.offset_frames);
 }
 
-/// The pairs of MPO and JPS files, each of which is read for either side.
-std::unique_ptr<PairSource> open_views(const PairSourceOptions& options) {
-  const auto open_view = [&](int view) {
-    PhotographReading reading = options.reading;
-    reading.page = view;
-    return open_frame_source(options.stereo, reading);
-  };
-  return in_order(open_view(0), open_view(1), 0);
-}
-
 std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
   if (options.queue != nullptr) {
     return std::make_unique<SuppliedPairs>(options.queue);
@@ -142,38 +122,38 @@ std::unique_ptr<PairSource> open_all_pairs(const PairSourceOptions& options) {
   if (options.is_stream()) {
     return open_streams(options);
   }
+  std::vector<std::string> notes;
+  const auto open = [&](const std::string& spec) {
+    return open_noted_source(spec, options.reading, notes);
+  };
+  const auto noted = [&](std::unique_ptr<PairSource> pairs) -> std::unique_ptr<PairSource> {
+    return notes.empty() ? std::move(pairs)
+                         : std::make_unique<NotedPairs>(std::move(pairs), std::move(notes));
+  };
   if (!options.stereo.empty()) {
-    std::unique_ptr<FrameSource> source = open_frame_source(options.stereo, options.reading);
-    if (options.packing) {
-      return packed_pairs(std::move(source), *options.packing);
-    }
-    if (source->video_file().empty() && is_stereo_jpeg(source->files().front())) {
-      return open_views(options);
-    }
-    throw UsageError("stereo needs packing, such as sbsl");
+    return noted(open_stereo_pairs(options, notes));
   }
   if (!options.pairs.empty()) {
     return open_pair_list(options.pairs, options.reading);
   }
   if (!options.sequence.empty()) {
-    return make_moving_camera_pairs(open_frame_source(options.sequence, options.reading),
-                                    {.step = options.step});
+    return noted(make_moving_camera_pairs(open(options.sequence), {.step = options.step}));
   }
-  auto left = open_frame_source(options.left, options.reading);
-  auto right = open_frame_source(options.right, options.reading);
+  auto left = open(options.left);
+  auto right = open(options.right);
   std::vector<const FrameSource*> cameras = {left.get(), right.get()};
   std::vector<std::unique_ptr<FrameSource>> more;
   for (const std::string& source : options.more) {
-    more.push_back(open_frame_source(source, options.reading));
+    more.push_back(open(source));
     cameras.push_back(more.back().get());
   }
   auto pairs = std::make_unique<TwoCameraPairs>(
       std::move(left), std::move(right),
       pair_frames(cameras, options.offset_frames, options.pair_by));
   if (more.empty()) {
-    return pairs;
+    return noted(std::move(pairs));
   }
-  return std::make_unique<SeveralCameras>(std::move(pairs), std::move(more));
+  return noted(std::make_unique<SeveralCameras>(std::move(pairs), std::move(more)));
 }
 
 }  // namespace
@@ -225,8 +205,8 @@ void PairSourceOptions::validate() const {
   if (!more.empty() && !two_cameras) {
     throw UsageError("more is given, expected it with left and right only");
   }
-  if (!stereo.empty() && is_stream() && !packing) {
-    throw UsageError("stereo needs packing, such as sbsl");
+  if (is_stream_name(stereo) && !packing) {
+    throw UsageError("stereo needs packing, such as sbsl: a stream does not say it");
   }
   if (packing && stereo.empty()) {
     throw UsageError("packing is given without stereo");

@@ -114,9 +114,10 @@ struct PairSourceOptions {
   std::optional<PairBy> pair_by;
   /// With left and right: sources of more cameras, paired with the left one without offset.
   std::vector<std::string> more;
-  /// One source whose frames hold both images; it may be a stream, see is_stream_name().
+  /// One source whose frames hold both images, or whose two video tracks do; it may be a stream, see
+  /// is_stream_name().
   std::string stereo;
-  std::optional<StereoPacking> packing;
+  std::optional<StereoPacking> packing;  ///< of `stereo`; empty: as the film says
   /// Of streams: rawvideo of this shape and frame rate (see StreamInput::open()).
   std::optional<RawVideoShape> raw_video;
   FrameRate raw_rate;
