@@ -59,7 +59,7 @@ RectifiedPair rectify(const StereoCalibration& calibration, const RectificationO
 void add_pair_settings(Settings& settings, PairInput& pair) {
   settings.positional("left", pair.left, "Left image").required = true;
   settings.positional("right", pair.right,
-                      "Right image of the same size; none: LEFT is an MPO or JPS file with both");
+                      "Right image of the same size; not with an MPO or JPS file");
   settings.input_path("left-disparity", pair.left_disparity, "FILE",
                       "Disparity map of the left image; without maps, the pair is matched");
   settings.input_path("right-disparity", pair.right_disparity, "FILE",

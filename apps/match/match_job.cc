@@ -46,7 +46,7 @@ void add_file_settings(Settings& settings, MatchJob& job) {
   settings.positional("left", job.left, "Left image; with --baselines the reference image")
       .required = true;
   settings.positional("right", job.right,
-                      "Right image of the same size; none: LEFT is an MPO or JPS file with both");
+                      "Right image of the same size; not with an MPO or JPS file");
   add_several_settings(settings, job);
   settings.flag("vertical", job.vertical,
                 "Cameras one above the other: LEFT is the image of the upper one, --disparities "

@@ -56,13 +56,13 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
                    "Pair left frame i with right frame i + N, counted from the first of each");
   add_pair_by_setting(settings, input.pair_by);
   path("stereo", input.stereo, "SOURCE",
-       "Frames with both images, see --packing (MPO and JPS need none); a stream: - (standard "
-       "input), a named pipe, /dev/videoN, tcp:// or rtsp://");
+       "Frames with both images, see --packing; a stream: - (standard input), a named pipe, "
+       "/dev/videoN, tcp:// or rtsp://");
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),
       "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
       "above/below, left on top; sbs2l, ab2l half size; irl, icl rows or columns that take turns; "
-      "al pictures that take turns; auto: as the film says, or its two video tracks");
+      "al pictures that take turns; auto: as the file says, or its two video tracks");
   add_deinterlace_setting(settings, input.reading);
   add_raw_video_setting(settings, input.raw_video);
   path("pairs", input.pairs, "FILE.csv",

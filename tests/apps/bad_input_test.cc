@@ -28,7 +28,7 @@ TEST_F(InputBadFiles, ImagesThatCannotBeMatched) {
       {"zero.png", zero_size},
       {"huge.png", huge},
       {"text.png", "This is no picture.\n"},
-      {"nan.pfm", pfm_of("Pf\n2 1\n-1.0\n", nan)},
+      {"nan.pfm", pfm_of("Pf\n1 1\n-1.0\n", nan)},
       {"inf.pfm", pfm_of("Pf\n2 1\n-1.0\n", infinity)},
       {"short.pfm", pfm_of("Pf\n200 100\n-1.0\n", 0)},
       {"zero.pfm", pfm_of("Pf\n0 0\n-1.0\n", 0)},

@@ -64,13 +64,22 @@ TEST_F(OpenedLibraries, NoneThatTakeLongForMapsOfJpeg) {
       {"match", folder_ / "left.jpg", right_, "-o", folder_ / "map.pfm", "--disparities=0:9"}));
 }
 
-TEST_F(OpenedLibraries, ImageCodecsButNoVideoCodecsForTiff) {
+TEST_F(OpenedLibraries, ImageCodecsButNoVideoCodecsForWebp) {
+  const std::string webp = folder_ / "left.webp";
+  write_photograph(webp, pair_.left);
+  const std::set<std::string> names =
+      opened_by({"match", webp, right_, "-o", folder_ / "map.pfm", "--disparities=0:9"});
+  EXPECT_THAT(names, Contains(StartsWith("libopencv_imgcodecs.so")));
+  EXPECT_THAT(names, Each(Not(StartsWith("libavcodec.so"))));
+}
+
+TEST_F(OpenedLibraries, NoneOfOpenCvForTiffThatIsRead) {
   const std::string tiff = folder_ / "left.tiff";
   write_photograph(tiff, pair_.left);
   const std::set<std::string> names =
       opened_by({"match", tiff, right_, "-o", folder_ / "map.pfm", "--disparities=0:9"});
-  EXPECT_THAT(names, Contains(StartsWith("libopencv_imgcodecs.so")));
-  EXPECT_THAT(names, Each(Not(StartsWith("libavcodec.so"))));
+  EXPECT_THAT(names, Contains(StartsWith("libtiff.so")));
+  EXPECT_THAT(names, Each(Not(StartsWith("libopencv_imgcodecs.so"))));
 }
 
 TEST_F(OpenedLibraries, VideoCodecsButNoImageCodecsForVideos) {
