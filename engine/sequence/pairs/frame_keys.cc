@@ -35,16 +35,12 @@ std::size_t digits_at(std::string_view text, std::size_t place) {
   return end > place ? end - place : 0;
 }
 
-/// Digits of the fraction behind the `whole` first ones, with a separator before it; 0: none. The
-/// point in "shot1.0001" separates two numbers.
+/// Digits of the fraction behind the `whole` first ones and a point; 0: none. The point in
+/// "shot1.0001" separates two numbers.
 std::size_t fraction_digits(std::string_view text, std::size_t whole) {
-  const std::size_t digits = whole < text.size() ? digits_at(text, whole + 1) : 0;
-  const bool is_fraction =
-      digits > 0 &&
-      (text[whole] == '.' ? whole >= kSecondsDigits || digits >= 6
-                          : (text[whole] == '_' || text[whole] == '-') &&
-                                whole == kSecondsDigits + 1 && digits == kFractionDigits);
-  return is_fraction ? digits : 0;
+  const bool has_point = whole < text.size() && text[whole] == '.';
+  const std::size_t digits = has_point ? digits_at(text, whole + 1) : 0;
+  return whole >= kSecondsDigits || digits >= 6 ? digits : 0;
 }
 
 Name name_of(const std::filesystem::path& file) {
@@ -124,22 +120,12 @@ void keep_difference(std::vector<Name>& names) {
   }
 }
 
-void read(NameReading reading, std::vector<Name>& names) {
-  if (reading == NameReading::kDifference) {
-    keep_difference(names);
-    return;
-  }
+void drop_sides(std::vector<Name>& names) {
   for (Name& name : names) {
-    if (reading == NameReading::kLastNumber) {
-      const auto last = std::find_if(name.rbegin(), name.rend(),
-                                     [](const Token& token) { return token.is_number; });
-      name = last == name.rend() ? Name() : Name{*last};
-    } else if (reading == NameReading::kWithoutSide) {
-      for (Token& token : name) {
-        token.text = without_side(token.text);
-      }
-      std::erase_if(name, [](const Token& token) { return token.text.empty(); });
+    for (Token& token : name) {
+      token.text = without_side(token.text);
     }
+    std::erase_if(name, [](const Token& token) { return token.text.empty(); });
   }
 }
 
@@ -164,7 +150,11 @@ void pad_nanoseconds(std::vector<std::string>& times) {
 FrameKeys frame_keys(const std::vector<std::filesystem::path>& files, NameReading reading) {
   std::vector<Name> names;
   std::ranges::transform(files, std::back_inserter(names), name_of);
-  read(reading, names);
+  if (reading == NameReading::kWithoutSide) {
+    drop_sides(names);
+  } else if (reading == NameReading::kDifference) {
+    keep_difference(names);
+  }
   FrameKeys keys;
   for (const Name& name : names) {
     std::string text;

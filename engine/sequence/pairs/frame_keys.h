@@ -15,14 +15,13 @@ struct FrameKeys {
 };
 
 /// Ways to read names, the most careful first. Numbers count by value, case and separators do not.
-enum class NameReading { kWhole, kWithoutSide, kDifference, kLastNumber };
+enum class NameReading { kWhole, kWithoutSide, kDifference };
 inline constexpr std::array kNameReadings = {NameReading::kWhole, NameReading::kWithoutSide,
-                                             NameReading::kDifference, NameReading::kLastNumber};
+                                             NameReading::kDifference};
 
 /// Keys of files by their names without extensions: all of them, or without words of a side (left,
 /// R, imgL), or what not all of them have at the same place ("cam0_shot2_17": 17 where all are of
-/// cam0 and shot2), or the last number. Seconds and nanoseconds ("1403636579.763555584", also with
-/// _ or - between) are one number.
+/// cam0 and shot2). Seconds with a fraction ("1403636579.763555584") are one number.
 FrameKeys frame_keys(const std::vector<std::filesystem::path>& files, NameReading reading);
 
 }  // namespace vantage

@@ -169,43 +169,26 @@ Found by_times_of_films(const FrameSource& left, const FrameSource& right, int o
   Found found = by_numbers(l, r, offset, true);
   const double later_s = r.front() - l.front();
   const double frame_s = std::min(step_of(l, true), step_of(r, true));
-  if (std::isfinite(frame_s) && std::abs(later_s) > 0.1 * frame_s && !found.partners.empty()) {
+  const bool are_late = std::isfinite(frame_s) && std::abs(later_s) > 0.1 * frame_s;
+  if (!found.partners.empty() && (are_late || left.frame_rate() != right.frame_rate())) {
     found.notes.push_back(fmt::format(
-        "the {} film starts {:.3f} s after the {} one: {}", later_s > 0 ? "right" : "left",
-        std::abs(later_s), later_s > 0 ? "left" : "right",
-        offset == 0 ? "frames are paired by the time at which they are shown"
-                    : fmt::format("an offset of {} frames is used instead", offset)));
-  }
-  if (left.frame_rate() != right.frame_rate() && !found.partners.empty()) {
-    const double shift_s = shift_of(l, r, offset, true);
-    double max_apart_s = 0;
-    for (const auto& [i, j] : found.partners) {
-      max_apart_s = std::max(max_apart_s, std::abs(r[static_cast<std::size_t>(j)] - shift_s -
-                                                   l[static_cast<std::size_t>(i)]));
-    }
-    found.notes.push_back(fmt::format(
-        "the left video has {} frames a second, the right one {}: frames are paired by the time at "
-        "which they are shown, up to {:.1f} ms apart",
-        to_string(*left.frame_rate()), to_string(*right.frame_rate()), 1e3 * max_apart_s));
+        "the right film starts {:.3f} s {} the left one and has {} frames a second, the left one "
+        "{}: frames are paired by {}",
+        std::abs(later_s), later_s < 0 ? "before" : "after", to_string(*right.frame_rate()),
+        to_string(*left.frame_rate()),
+        offset == 0 ? "the time at which they are shown" : "the offset and the rates"));
   }
   return found;
 }
 
-/// "left/3.png, left/7.png to left/9.png and 5 others".
+/// "left/3.png, left/7.png and 5 others".
 std::string list_of(const FrameSource& source, const std::vector<int>& frames) {
   std::string text;
-  std::size_t listed = 0;
-  std::size_t i = 0;
-  for (; i < frames.size() && listed < kListed; ++listed) {
-    std::size_t last = i;
-    while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) {
-      ++last;
-    }
-    text += (text.empty() ? "" : ", ") + source.describe(frames[i]);
-    text += last == i ? "" : " to " + source.describe(frames[last]);
-    i = last + 1;
+  for (std::size_t i = 0; i < std::min(frames.size(), kListed); ++i) {
+    text += (i == 0 ? "" : ", ") + source.describe(frames[i]);
   }
-  return i == frames.size() ? text : text + fmt::format(" and {} others", frames.size() - i);
+  return frames.size() <= kListed ? text
+                                  : text + fmt::format(" and {} others", frames.size() - kListed);
 }
 
 std::string name_of_camera(std::size_t camera) {
