@@ -79,7 +79,34 @@ TEST_F(InputBadCalibration, GoodOnesAreTaken) {
   }
 }
 
+TEST_F(InputBadCalibration, WhatIsAssumedIsTold) {
+  Entries entries = good_rig();
+  entries["image_width"] = "142";
+  entries["image_height"] = "106";
+  entries["M1"] = "[140, 0, 70, 0, 140, 52, 0, 0, 1]";
+  entries["M2"] = "[140, 0, 72, 0, 140, 54, 0, 0, 1]";
+  write_file(calibration_, yaml_of(entries));
+  const Words match = {
+      "match",         left_,       right_, "-o", folder_ / "out.pfm", "--disparities=0:9",
+      "--calibration", calibration_};
+  const std::string scaled = "rig.txt is for images of 142x106 and is scaled to 71x53\n";
+  const auto told = run_vantage(match).err;
+  EXPECT_THAT(told, HasSubstr(scaled));
+  EXPECT_THAT(told, HasSubstr("count as k1 k2 p1 p2; --lens fisheye for those of cv2.fisheye\n"));
+  const auto chosen = run_vantage(joined(
+      match, {"--lens", "fisheye", "--depth", folder_ / "z.npy", "--calibration-unit", "m"}));
+  EXPECT_THAT(chosen.err, Not(HasSubstr("count as")));
+  entries["T"] = "[-120, 0, 0]";
+  write_file(calibration_, yaml_of(entries));
+  EXPECT_THAT(
+      run_vantage(joined(match, {"--depth", folder_ / "z.npy", "--calibration-unit", "m"})).err,
+      HasSubstr("the baseline is 120 m: is its unit another one? --calibration-unit"));
+}
+
 TEST_F(InputBadCalibration, CamerasThatCannotBe) {
+  expect_refused(yaml_with("D1", "\n   rows: 4\n   cols: 1\n   data: [0.1, 0, 0, 0]"),
+                 "D1 is 4x1 and no key says of which lens, expected --lens fisheye",
+                 /*by_all_commands=*/true);
   expect_refused(yaml_with("M1", "[0, 0, 35, 0, 70, 26, 0, 0, 1]"), "the left camera's fx is 0");
   expect_refused(yaml_with("M2", "[70, 0, 36, 0, -70, 27, 0, 0, 1]"),
                  "the right camera's fy is -70, expected a focal length of 0.001 to 1e7 pixels");
