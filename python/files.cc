@@ -27,23 +27,28 @@ namespace {
 
 ChannelOrder order_of(bool bgr) { return bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb; }
 
+/// NaN where floats have no data, as in files and arrays.
+Photograph with_nan(Photograph photograph) {
+  if (auto* const floats = std::get_if<Image<float>>(&photograph.pixels)) {
+    erase_left_out(photograph.left_out, *floats);
+  }
+  return photograph;
+}
+
 py::array read_image(const py::object& path, bool bgr, const py::dict& options) {
   const std::string file = path_of(path);
   PhotographReading reading;
   Settings settings;
   add_reading_settings(settings, reading);
   set_options(settings, options);
-  Photograph photograph = without_gil([&] { return read_photograph(file, reading); });
-  if (auto* const floats = std::get_if<Image<float>>(&photograph.pixels)) {
-    erase_left_out(photograph.left_out, *floats);  // NaN again, as in the file
-  }
-  return array_of(std::move(photograph), order_of(bgr));
+  return array_of(without_gil([&] { return with_nan(read_photograph(file, reading)); }),
+                  order_of(bgr));
 }
 
 void write_image(const py::object& path, const py::object& image, bool bgr) {
   const std::string file = path_of(path);
   const PixelArray pixels(image, order_of(bgr), "image");
-  without_gil([&] { write_photograph(file, pixels.copy()); });
+  without_gil([&] { write_photograph(file, with_nan(pixels.copy())); });
 }
 
 /// Reads by read_disparity or read_depth. There is no report that would have notes, so all remarks

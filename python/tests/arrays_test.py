@@ -133,6 +133,19 @@ def test_floats_that_are_not_finite(pair, value):
         MATCHER.compute(left, pair[1])
 
 
+def test_nan_is_no_data(pair, tmp_path):
+    left, right = [image.astype(np.float32) / 255 for image in pair]
+    left[7:9, 5] = np.nan
+    unknown = np.isnan(MATCHER.compute(left, right).disparity)
+    assert unknown[7:9, 5].all() and unknown.mean() < 0.01
+    vantage.write_image(tmp_path / "left.pfm", left)
+    assert same(vantage.read_image(tmp_path / "left.pfm"), left)
+    green = vantage.read_image(tmp_path / "left.pfm", band=2, orientation="stored")
+    assert same(green, left[..., 1])
+    with pytest.raises(vantage.Error, match="has 3 bands"):
+        vantage.read_image(tmp_path / "left.pfm", band=4)
+
+
 @pytest.mark.parametrize("dtype, white, others", [
     (np.float32, 255, {}), (np.uint16, 1023, {}), (np.uint16, 4095, {"white_level": 4095}),
 ])

@@ -79,9 +79,6 @@ Photograph decode_with_opencv(const FileBytes& file, std::span<const std::uint8_
   if (decoded.channels() != 1 && decoded.channels() != 3 && decoded.channels() != 4) {
     file.fail(fmt::format("has {} channels, expected 1, 3 or 4", decoded.channels()));
   }
-  if (decoded.depth() == CV_64F) {
-    decoded.convertTo(decoded, CV_32F);
-  }
   switch (decoded.depth()) {
     case CV_8U:
       return {from_bgr<std::uint8_t>(decoded, memory)};
