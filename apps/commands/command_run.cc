@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include "apps/commands/commands.h"
@@ -86,22 +87,6 @@ std::string finish_if_whole(const RunJob& job, const RunSession& session,
   return sound_problem;
 }
 
-/// A live stream is read by a thread of its own, which may wait for a sender who waits for us.
-class EndOfReading {
- public:
-  explicit EndOfReading(bool is_live) : is_live_(is_live) {}
-  EndOfReading(const EndOfReading&) = delete;
-  EndOfReading& operator=(const EndOfReading&) = delete;
-  ~EndOfReading() {
-    if (is_live_) {
-      request_end();
-    }
-  }
-
- private:
-  bool is_live_;
-};
-
 }  // namespace
 
 int command_run(const Arguments& arguments) {
@@ -120,7 +105,12 @@ int command_run(const Arguments& arguments) {
     require_display();
   }
   RunSession session = open_run(job, settings, report);
-  const EndOfReading end(job.input.live);
+  // A live stream is read by a thread of its own, which may wait for a sender who waits for us.
+  const std::shared_ptr<void> end_of_reading(nullptr, [&](void*) {
+    if (job.input.live) {
+      request_end();
+    }
+  });
   const std::string plan = describe_plan(job, session);
   if (job.dry_run) {
     fmt::print("{}", plan);
