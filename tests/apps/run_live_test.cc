@@ -85,9 +85,9 @@ TEST_F(RunLive, AWindowNeedsAScreen) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
-/// Presses q in the window of a run that would go on for long, or lets it end.
+/// The second run would go on, but for a key.
 TEST_F(RunLive, AWindowShowsARun) {
-  if (shell("command -v Xvfb xdotool && [ $(command -v Xvfb xdotool | wc -l) = 2 ]") != 0) {
+  if (shell("command -v Xvfb >/dev/null && command -v xdotool >/dev/null") != 0) {
     GTEST_SKIP() << "no Xvfb or xdotool here";
   }
   const std::string screen =
