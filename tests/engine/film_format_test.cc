@@ -99,6 +99,40 @@ TEST(FilmFormats, PqWithItsDisplayIsKept) { expect_kept<std::uint16_t>(kPq, 0.00
 TEST(FilmFormats, HlgIsKept) { expect_kept<std::uint16_t>(kHlg, 0.006); }
 TEST(FilmFormats, FullRangeBt601IsKept) { expect_kept<std::uint8_t>(kSd, 0.02); }
 
+TEST(FilmFormats, HdrInEightBitsIsToneMapped) {
+  // Grey of these luminances by SMPTE ST 2084, mapped by Hable's curve and coded by BT.1886.
+  constexpr std::array kLuminances = {10.0, 100.0, 203.0, 400.0, 1000.0};
+  const auto code_of = [](double luminance) {
+    const double y = std::pow(luminance / 10000, 0.1593017578125);
+    return std::pow((0.8359375 + 18.8515625 * y) / (1 + 18.6875 * y), 78.84375);
+  };
+  const auto curve = [](double x) {
+    return (x * (x * 0.15 + 0.05) + 0.004) / (x * (x * 0.15 + 0.5) + 0.06) - 0.02 / 0.3;
+  };
+  const TemporaryFolder folder;
+  VideoWriter writer(folder / "a.mp4", kWidth, kHeight, {.rate = {}, .crf = 2, .format = kPq});
+  for (const double luminance : kLuminances) {
+    Image<std::uint16_t> grey(kWidth, kHeight, 3);
+    grey.fill(static_cast<std::uint16_t>(std::lround(65535 * code_of(luminance))));
+    writer.write(Photograph{std::move(grey)});
+  }
+  writer.finish();
+  VideoReader reader(folder / "a.mp4");
+  const FilmFormat expected = {
+      .pixel_aspect = kPq.pixel_aspect,
+      .colours = {
+          .primaries = AVCOL_PRI_BT709, .transfer = AVCOL_TRC_BT709, .matrix = AVCOL_SPC_BT709}};
+  EXPECT_EQ(reader.film_format(), expected);
+  Photograph frame;
+  for (const double luminance : kLuminances) {
+    ASSERT_TRUE(reader.read(frame));
+    const auto& image = std::get<Image<std::uint8_t>>(frame.pixels);
+    EXPECT_NEAR(image.at(kWidth / 2, kHeight / 2, 1) / 255.0,
+                std::pow(curve(luminance / 100) / curve(10), 1 / 2.4), 0.01)
+        << luminance;
+  }
+}
+
 TEST(FilmFormats, WhatStatesNothingIsBt709) {
   FilmColours usual = {
       .primaries = AVCOL_PRI_BT709, .transfer = AVCOL_TRC_BT709, .matrix = AVCOL_SPC_BT709};

@@ -8,9 +8,11 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <optional>
 #include <type_traits>
 
 #include "engine/error.h"
+#include "engine/io/video/libav_filter.h"
 #include "engine/io/video/libav_scaler.h"
 #include "engine/io/video/stated_format.h"
 
@@ -167,6 +169,36 @@ class PhotographToFrame {
   LibavFrame yuv_;
 };
 
+/// HDR for a coding of 8 bits: SDR of BT.709, by FFmpeg's filters.
+class HdrToSdrFrame {
+ public:
+  HdrToSdrFrame(int width, int height, const FilmColours& source)
+      : to_hdr_(traits_of(VideoCoding::kHevcColours_10), width, height, source) {}
+
+  AVFrame& convert(const Photograph& photograph) {
+    // White of SDR at 100 cd/m², the brightest at 1000, as most films are graded.
+    constexpr const char* kToneMapping =
+        "zscale=transfer=linear:npl=100,format=gbrpf32le,zscale=primaries=bt709,"
+        "tonemap=hable:desat=0:peak=10,zscale=transfer=bt709:matrix=bt709:range=limited,"
+        "format=yuv420p";
+    const AVFrame& hdr = to_hdr_.convert(photograph);
+    if (!filter_) {
+      filter_.emplace(kToneMapping, hdr);
+    }
+    filter_->put(hdr);
+    sdr_ = filter_->take();
+    if (sdr_ == nullptr) {
+      throw Error("a picture of HDR cannot be tone-mapped");
+    }
+    return *sdr_;
+  }
+
+ private:
+  PhotographToFrame<std::uint16_t> to_hdr_;
+  std::optional<LibavFilter> filter_;
+  LibavFrame sdr_;
+};
+
 }  // namespace
 
 FrameConversion make_frame_conversion(VideoCoding coding, int width, int height,
@@ -177,6 +209,9 @@ FrameConversion make_frame_conversion(VideoCoding coding, int width, int height,
   const VideoCodingTraits& traits = traits_of(coding);
   if (is_grey(coding)) {
     return calls(std::make_shared<GreyToFrame>(traits, width, height));
+  }
+  if (source.is_hdr() && coding == VideoCoding::kH264) {
+    return calls(std::make_shared<HdrToSdrFrame>(width, height, source));
   }
   return traits.bits > 8 ? calls(std::make_shared<PhotographToFrame<std::uint16_t>>(traits, width,
                                                                                     height, source))

@@ -143,10 +143,14 @@ VideoCoding colour_coding(const FilmColours& source) {
 const char* written_as(const FilmColours& source) {
   return colour_coding(source) == VideoCoding::kHevcColours_10
              ? "videos of views state the same (HEVC, 10 bits)"
-             : "videos of views state the same (H.264, 8 bits)";
+         : source.is_hdr() ? "without an encoder of HEVC views are tone-mapped to BT.709"
+                           : "videos of views state the same (H.264, 8 bits)";
 }
 
-FilmColours written_colours(const FilmColours& source, VideoCoding /*coding*/) {
+FilmColours written_colours(const FilmColours& source, VideoCoding coding) {
+  if (source.is_hdr() && coding == VideoCoding::kH264) {
+    return written_colours({}, coding);
+  }
   FilmColours written = source;
   if (!is_made_of_rgb(source.matrix)) {
     written.matrix = source.primaries == AVCOL_PRI_BT2020 ? AVCOL_SPC_BT2020_NCL : AVCOL_SPC_BT709;

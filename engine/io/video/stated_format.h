@@ -23,7 +23,8 @@ std::string to_text(const FilmFormat& format);
 VideoCoding colour_coding(const FilmColours& source);
 
 /// The colours of such a film. All as stated, where a coding of R, G and B can have them; a film
-/// that states nothing, or its matrix alone as BT.709, is BT.709, as players take it.
+/// that states nothing, or its matrix alone as BT.709, is BT.709, as players take it. So is HDR in
+/// H.264: it is tone-mapped.
 FilmColours written_colours(const FilmColours& source, VideoCoding coding);
 /// What becomes of it, for a remark.
 const char* written_as(const FilmColours& source);
