@@ -7,11 +7,8 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <new>
-#include <string_view>
 #include <utility>
 
 #include "engine/error.h"
@@ -37,33 +34,6 @@ constexpr std::chrono::seconds kConnecting{10};
 constexpr std::chrono::seconds kSilence{60};
 /// No protocol: nothing else may be opened.
 constexpr const char* kNothing = "none";
-
-struct Scheme {
-  std::string_view prefix;
-  const char* protocols;                ///< that it uses
-  const char* demultiplexer = nullptr;  ///< which connects; null: found by the first bytes
-};
-/// Of addresses that may be named.
-constexpr std::array<Scheme, 2> kSchemes = {
-    {{"tcp://", "tcp"}, {"rtsp://", "rtsp,rtp,udp,tcp", "rtsp"}}};
-
-const Scheme* scheme_of(std::string_view name) {
-  const auto found = std::ranges::find_if(
-      kSchemes, [&](const Scheme& scheme) { return name.starts_with(scheme.prefix); });
-  return found == kSchemes.end() ? nullptr : found;
-}
-
-bool is_pipe(const std::string& name) {
-  struct stat status {};
-  return ::stat(name.c_str(), &status) == 0 && S_ISFIFO(status.st_mode);
-}
-
-bool is_camera(const std::string& name) {
-  constexpr unsigned kVideo4Linux = 81;  // Linux's number of the driver
-  struct stat status {};
-  return ::stat(name.c_str(), &status) == 0 && S_ISCHR(status.st_mode) &&
-         major(status.st_rdev) == kVideo4Linux;
-}
 
 /// Without user and password.
 std::string without_user(const std::string& address) {
@@ -96,28 +66,33 @@ void set_shape(const RawVideoShape& raw, FrameRate rate, AVDictionary** options)
 
 }  // namespace
 
-bool is_stream_name(const std::string& name) {
-  return name == kStandardInput || scheme_of(name) != nullptr || is_pipe(name) || is_camera(name);
+StreamInput::Kind StreamInput::kind_of(const std::string& name) {
+  constexpr unsigned kVideo4Linux = 81;  // Linux's number of the driver
+  if (name.starts_with("tcp://") || name.starts_with("rtsp://")) {
+    return name.starts_with("tcp") ? Kind::kTcp : Kind::kRtsp;
+  }
+  struct stat status {};
+  if (name == kStandardInput || (::stat(name.c_str(), &status) == 0 && S_ISFIFO(status.st_mode))) {
+    return Kind::kPipe;
+  }
+  return S_ISCHR(status.st_mode) && major(status.st_rdev) == kVideo4Linux ? Kind::kCamera
+                                                                          : Kind::kNone;
 }
 
 StreamInput::StreamInput(std::string name, const std::atomic<bool>* stop)
-    : name_(std::move(name)), shown_name_(name_), stop_(stop) {
+    : name_(std::move(name)),
+      shown_name_(is_of_network() ? without_user(name_) : name_),
+      stop_(stop) {
   silence_libav();
-  if (const Scheme* scheme = scheme_of(name_)) {
-    kind_ = Kind::kNetwork;
-    shown_name_ = without_user(name_);
-    if (scheme->demultiplexer == nullptr) {
-      connect(scheme->protocols);
-    }
-  } else if (is_camera(name_)) {
-    kind_ = Kind::kCamera;
-  } else {
+  if (kind_ == Kind::kTcp) {
+    connect();
+  } else if (kind_ == Kind::kPipe) {
     open_pipe();
   }
 }
 
 StreamInput::~StreamInput() {
-  if (kind_ == Kind::kNetwork) {
+  if (kind_ == Kind::kTcp) {
     libav().avio_closep(&io_);
   } else if (io_ != nullptr) {
     av_freep(&io_->buffer);  // libav may have exchanged it
@@ -188,7 +163,7 @@ void StreamInput::wait_at_most(std::chrono::seconds limit) {
 }
 
 void StreamInput::allow_silence() {
-  if (kind_ == Kind::kNetwork) {
+  if (is_of_network()) {
     wait_at_most(kSilence);
   }
 }
@@ -199,10 +174,10 @@ std::string StreamInput::problem(int result) const {
              : libav_message(result);
 }
 
-void StreamInput::connect(const char* protocols) {
+void StreamInput::connect() {
   wait_at_most(kConnecting);
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "protocol_whitelist", protocols, 0);
+  av_dict_set(&options, "protocol_whitelist", "tcp", 0);
   const AVIOInterruptCB callback = {is_over, this};
   const int result = libav().avio_open2(&io_, name_.c_str(), AVIO_FLAG_READ, &callback, &options);
   av_dict_free(&options);
@@ -215,20 +190,20 @@ void StreamInput::connect(const char* protocols) {
 }
 
 LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate raw_rate) {
-  const Scheme* const scheme = scheme_of(name_);
   const bool connects = io_ == nullptr;
   AVDictionary* options = nullptr;
-  const AVInputFormat* format = nullptr;
-  if (raw && (kind_ == Kind::kCamera || !connects)) {
+  if (raw && kind_ != Kind::kRtsp) {
     set_shape(*raw, raw_rate, &options);
-    format = libav().av_find_input_format("rawvideo");
   }
+  const AVInputFormat* format = nullptr;
   if (kind_ == Kind::kCamera) {
     register_cameras();
     format = libav().av_find_input_format("video4linux2");
-  } else if (connects) {
-    format = libav().av_find_input_format(scheme->demultiplexer);
+  } else if (kind_ == Kind::kRtsp) {
+    format = libav().av_find_input_format("rtsp");
     av_dict_set(&options, "rtsp_flags", "prefer_tcp", 0);  // which loses nothing
+  } else if (raw) {
+    format = libav().av_find_input_format("rawvideo");
   }
   AVFormatContext* opened = libav().avformat_alloc_context();
   if (opened == nullptr) {
@@ -237,8 +212,7 @@ LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate 
   }
   opened->pb = io_;
   opened->interrupt_callback = {is_over, this};
-  opened->protocol_whitelist =
-      av_strdup(connects && scheme != nullptr ? scheme->protocols : kNothing);
+  opened->protocol_whitelist = av_strdup(kind_ == Kind::kRtsp ? "rtsp,rtp,udp,tcp" : kNothing);
   if (format == nullptr) {
     opened->format_whitelist = av_strdup(kVideoContainers);
   }
@@ -258,7 +232,7 @@ LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate 
   if (is_stopped()) {
     throw scheduler::Interrupted();
   }
-  if (result < 0 && (connects || kind_ == Kind::kNetwork)) {
+  if (result < 0 && (connects || is_of_network())) {
     fail(fmt::format("cannot be opened ({})", problem(result)));
   }
   if (result < 0 || find_video_stream(*input) == nullptr) {
