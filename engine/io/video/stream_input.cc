@@ -218,7 +218,7 @@ LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate 
   }
   // Rates are those that are stated: frames are not awaited to measure them.
   opened->fps_probe_size = 0;
-  connects&& kind_ == Kind::kNetwork ? wait_at_most(kConnecting) : allow_silence();
+  kind_ == Kind::kRtsp ? wait_at_most(kConnecting) : allow_silence();
   int result =
       libav().avformat_open_input(&opened, connects ? name_.c_str() : "", format, &options);
   av_dict_free(&options);
