@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include "apps/commands/commands.h"
@@ -118,12 +119,20 @@ void check(const EvalJob& job, const Settings& settings) {
   check_common_files(job.common, files);
 }
 
+/// Adds to `remarks` what was assumed, of each subject once: the maps of a folder are alike.
 DisparityMap read_map(const EvalJob& job, const std::string& path, Execution& execution,
                       std::vector<Remark>& remarks) {
-  return read_given_map(
-      path, job.given,
-      [&](int width, int height) { return job.cameras.camera(width, height, Side::kLeft).scale; },
-      execution, remarks);
+  std::vector<Remark> found;
+  std::vector<Remark> of_cameras;
+  const auto camera = [&](int width, int height) {
+    return job.cameras.camera(width, height, Side::kLeft, &of_cameras).scale;
+  };
+  DisparityMap map = read_given_map(path, job.given, camera, execution, found);
+  found.insert(found.end(), of_cameras.begin(), of_cameras.end());
+  std::ranges::copy_if(found, std::back_inserter(remarks), [told = remarks](const Remark& remark) {
+    return std::ranges::count(told, remark.subject, &Remark::subject) == 0;
+  });
+  return map;
 }
 
 /// 255 where all colours of an 8-bit image are 255. Masks often come with a palette, hence in
@@ -186,7 +195,7 @@ void judge_folder(const EvalJob& job, Execution& execution, RunReport& report) {
                             job.second, missing.front()));
   }
   std::vector<Remark> remarks = {{Remark::Kind::kNote, "layout",
-                                  fmt::format("{} is taken as {} by what is in it: {} scenes",
+                                  fmt::format("{} is taken as {} by what is in it; scenes: {}",
                                               job.second, folder.layout, folder.scenes.size())}};
   if (!missing.empty()) {
     remarks.push_back({Remark::Kind::kWarning, "missing",

@@ -90,6 +90,10 @@ TEST(MapsOfOtherTools, WhatOpenCvCouldNotMatchIsUnknown) {
   const std::array<std::int16_t, 6> below = {-80, -64, -17, 8, 3, -80};
   put_text(folder / "d.npy", npy("<i2", bytes_of_values(below)));
   expect_map(folder / "d.npy", 16, {kNan, -4, -1.0625F, 0.5F, 0.1875F, kNan});
+  // Whole pixels: −1 is unknown.
+  put_text(folder / "d.npy",
+           npy("<i4", bytes_of_values(std::array<std::int32_t, 6>{-1, 40, 0, 81, -1, 100})));
+  expect_map(folder / "d.npy", 1, {kNan, 40, 0, 81, kNan, 100});
   // All values are whole pixels, none is −1: they are of another tool, and all are known.
   put_text(folder / "d.npy",
            npy("<i2", bytes_of_values(std::array<std::int16_t, 6>{-80, -64, -16, 16, 32, 48})));
