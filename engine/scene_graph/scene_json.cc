@@ -187,6 +187,9 @@ StoredScene scene_of(const Json& json, const std::string& name) {
     }
   }
   scene.reading.turns_upright = json.value("orientation", "upright") != "stored";
+  if (json.contains("band")) {
+    scene.reading.band = json.at("band").get<int>();
+  }
   for (const Json& image : json.at("images")) {
     scene.images.push_back(
         {.file = name_of_stored(image.at("file").get<std::string>()),
@@ -238,6 +241,9 @@ std::string scene_text(const StoredScene& scene) {
   }
   if (!scene.reading.turns_upright) {
     json["orientation"] = "stored";
+  }
+  if (scene.reading.band) {
+    json["band"] = *scene.reading.band;
   }
   if (scene.is_posed()) {
     add_posed_values(scene, json);

@@ -250,8 +250,13 @@ TEST(PhotographIo, ReadsOneBand) {
   ASSERT_EQ(green.channels(), 1);
   EXPECT_EQ(std::get<Image<std::uint16_t>>(green.pixels).at(4, 1),
             std::get<Image<std::uint16_t>>(colour.pixels).at(4, 1, 1));
-  EXPECT_THAT(error_of([&] { read_photograph(folder / "a.png", {.band = 4}); }),
-              HasSubstr("has 3 bands"));
+  write_photograph(folder / "a.tif", colour);
+  for (const char* name : {"a.png", "a.tif"}) {
+    for (const int band : {0, 4}) {
+      EXPECT_THAT(error_of([&] { read_photograph(folder / name, {.band = band}); }),
+                  HasSubstr("has 3 bands"));
+    }
+  }
 }
 
 TEST(PhotographIo, RefusesInfinityAndLeavesOutNaN) {

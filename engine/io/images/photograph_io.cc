@@ -175,10 +175,10 @@ void check_capability(const std::filesystem::path& path, const std::string& exte
 /// Makes one band of several the photograph, if it was not chosen yet.
 void take_band(const FileBytes& file, std::optional<int> band, Photograph& photograph) {
   const int channels = photograph.channels();
-  if (!band || (channels == 1 && *band <= 1)) {
+  if (!band || (channels == 1 && *band == 1)) {
     return;
   }
-  if (*band > channels) {
+  if (*band < 1 || *band > channels) {
     file.fail(fmt::format("has {} band{}, expected number {} (`band`) to be one of them", channels,
                           channels == 1 ? "" : "s", *band));
   }
@@ -230,7 +230,7 @@ DecodedImage decode(const FileBytes& file, const PhotographReading& reading, Pho
       stated = check_image_header(file, format);
       result.photograph = decode_with_opencv(file, file.all(), memory);
   }
-  if (format != ImageFormat::kTiff || result.photograph.channels() > 1) {
+  if (format != ImageFormat::kTiff || result.photograph.channels() > 1) {  // else it was chosen
     take_band(file, reading.band, result.photograph);
   }
   if (reading.turns_upright) {

@@ -132,7 +132,7 @@ BandChoice choose_bands(const FileBytes& file, const TiffLayout& layout, std::op
     choice.channel_of[static_cast<std::size_t>(sample)] = channel;
   };
   if (band) {
-    if (*band > samples) {
+    if (*band < 1 || *band > samples) {
       file.fail(fmt::format("has {} bands, expected number {} (`band`) to be one of them", samples,
                             *band));
     }
