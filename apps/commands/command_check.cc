@@ -76,8 +76,7 @@ void add_check_settings(Settings& settings, CheckJob& job) {
                                  "auto: as the film says");
   add_deinterlace_setting(settings, job.input.reading);
   settings.input_path("calibration", job.calibration, "FILE",
-                      "Cameras, to rectify the pair first: OpenCV, ROS, Kalibr, Middlebury, KITTI "
-                      "or other file, or two, A,B");
+                      "Cameras, to rectify the pair first: file of any tool, or two (A,B)");
   add_calibration_choice_settings(settings, job.calibration_choice);
   add_scene_mask_settings(settings, job.input.masks, true);
   add_white_level_setting(settings, job.input.white_level);

@@ -21,8 +21,7 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
   add_pair_by_setting(settings, job.input.pair_by);
   settings.input_path(
       "calibration", job.calibration, "FILE",
-      "Cameras: OpenCV, ROS, Kalibr, Middlebury, KITTI or other file, or two, A,B; default: "
-      "estimated from the images");
+      "Cameras: file of any tool, or two (A,B); default: estimated from the images");
   add_calibration_choice_settings(settings, job.calibration_choice);
   Setting& board = settings.add(
       "board", "BOARD",

@@ -26,7 +26,7 @@ MapCamera MapCameraInput::camera(int width_px, int height_px, Side side,
 void add_map_camera_settings(Settings& settings, MapCameraInput& cameras, RigUse use) {
   settings.input_path("calibration", cameras.calibration, "FILE",
                       "Cameras of the pair, or of the photographs that it was rectified from: "
-                      "OpenCV, ROS, Kalibr, Middlebury, KITTI or other file, or two, A,B");
+                      "file of OpenCV, KITTI or another tool, or two (A,B)");
   add_kept_outline_setting(settings, cameras.rectification);
   add_calibration_choice_settings(settings, cameras.calibration_choice);
   add_rig_scale_settings(settings, cameras.rig, use);

@@ -67,8 +67,8 @@ void add_pair_settings(Settings& settings, PairInput& pair) {
   add_given_map_settings(settings, pair.given);
   settings.input_path(
       "calibration", pair.calibration, "FILE",
-      "Cameras, to rectify the pair first if needed: OpenCV, ROS, Kalibr, Middlebury, "
-      "KITTI or other file, or two, A,B; given maps belong to rectified images");
+      "Cameras, to rectify the pair first if needed: file of any tool, or two (A,B); "
+      "given maps belong to rectified images");
   add_kept_outline_setting(settings, pair.rectification);
   add_calibration_choice_settings(settings, pair.calibration_choice);
   add_rig_scale_settings(settings, pair.rig, RigUse::kDepths);

@@ -52,9 +52,10 @@ std::optional<MapCamera> DepthGeometry::camera(Side side) const {
 
 void add_depth_settings(Settings& settings, DepthSettings& depth) {
   settings.start_group("Depth, in metres");
-  settings.input_path("calibration", depth.calibration, "FILE",
-                      "Cameras, to rectify the pair first if needed, and for depths: OpenCV, ROS, "
-                      "Kalibr, Middlebury, KITTI or other file, or two, A,B");
+  settings.input_path(
+      "calibration", depth.calibration, "FILE",
+      "Cameras, to rectify the pair first if needed, and for depths: file of OpenCV, "
+      "KITTI or another tool, or two (A,B)");
   add_kept_outline_setting(settings, depth.rectification);
   add_calibration_choice_settings(settings, depth.calibration_choice);
   add_rig_scale_settings(settings, depth.rig);

@@ -89,14 +89,14 @@ constexpr Rule kRunRules[] = {
     {kJob, "kept-outline > 0", "unless calibration | column calibration",
      "--kept-outline has no effect without --calibration"},
     {kJob, "kitti-cameras | lens", "unless calibration | unrectified | column calibration",
-     "no effect without --calibration"},
+     "--{option} has no effect without --calibration"},
     {kJob, "user in-flight | user every | frames", "live",
      "--{option} cannot be used with --live: one frame is in flight, and the time decides which"},
     // A list of pairs whose columns say something of each pair.
     {kPairList, "kept-outline > 0", "unless calibration | column calibration",
      "--kept-outline has no effect without --calibration"},
     {kPairList, "kitti-cameras | lens", "unless calibration | unrectified | column calibration",
-     "no effect without --calibration"},
+     "--{option} has no effect without --calibration"},
     {kPairList, "unrectified", "column calibration",
      "--unrectified cannot be used with a list of pairs with the column calibration: its file is "
      "of all pairs"},

@@ -152,8 +152,7 @@ void add_input_settings(Settings& settings, SequenceJob& job) {
                         "once; disparities are those of left and right");
   settings
       .input_path("calibration", job.calibration, "FILE",
-                  "Cameras, to rectify the pairs first: OpenCV, ROS, Kalibr, Middlebury, KITTI or "
-                  "other file, or two, A,B")
+                  "Cameras, to rectify the pairs first: file of any tool, or two (A,B)")
       .changes_results = false;  // the journal identifies inputs by their content
   add_kept_outline_setting(settings, job.rectification);
   add_scene_mask_settings(settings, job.input.masks, true);

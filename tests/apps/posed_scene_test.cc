@@ -174,14 +174,14 @@ TEST_F(PosedScene, SaysWhatIsWrong) {
   };
   EXPECT_THAT(problem({"--poses", model_, "--grid", "2x2"}), HasSubstr("grid"));
   EXPECT_THAT(problem({"--poses", model_, "--intrinsics", model_ + "/cameras.txt"}),
-              HasSubstr("--intrinsics is given with a COLMAP model"));
+              HasSubstr("--intrinsics is given with a model"));
   EXPECT_THAT(problem({"--poses", model_, "--neighbours", "0"}), HasSubstr("neighbours is 0"));
   EXPECT_THAT(problem({"--neighbours", "3"}), HasSubstr("neighbours"));
   fs::rename(images_ + "/3.png", images_ + "/x.png");
   EXPECT_THAT(problem({"--poses", model_}), HasSubstr("3.png is missing, expected an image of"));
   fs::rename(images_ + "/x.png", images_ + "/3.png");
-  write_file(model_ + "/cameras.txt", "1 PINHOLE 320 240 600 600 160 120\n");
-  EXPECT_THAT(problem({"--poses", model_}), HasSubstr("expected 320×240 as its camera"));
+  write_file(model_ + "/cameras.txt", "1 PINHOLE 320 200 600 600 160 120\n");
+  EXPECT_THAT(problem({"--poses", model_}), HasSubstr("expected 320×200 as its camera"));
 }
 
 }  // namespace vantage::posed_scene_test
