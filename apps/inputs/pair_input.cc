@@ -8,12 +8,12 @@
 #include "apps/inputs/automatic_disparities.h"
 #include "apps/inputs/given_maps.h"
 #include "apps/inputs/kitti_cameras_choice.h"
-#include "apps/inputs/stereo_file.h"
 #include "apps/reports/remarks.h"
 #include "engine/error.h"
 #include "engine/image/orientation.h"
 #include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
+#include "engine/io/images/stereo_jpeg.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/pair_source_settings.h"
@@ -55,6 +55,20 @@ RectifiedPair rectify(const StereoCalibration& calibration, const RectificationO
 }
 
 }  // namespace
+
+void name_views(std::string& left, std::string& right) {
+  if (!right.empty()) {
+    return;
+  }
+  if (!is_stereo_jpeg(left)) {
+    throw UsageError(
+        fmt::format("RIGHT is missing, expected it unless LEFT holds both views (MPO, JPS); '{}' "
+                    "does not",
+                    left));
+  }
+  right = left + "#1";
+  left += "#0";
+}
 
 void add_pair_settings(Settings& settings, PairInput& pair) {
   settings.positional("left", pair.left, "Left image").required = true;

@@ -41,6 +41,10 @@ struct PairInput {
   [[nodiscard]] bool has_maps() const { return !left_disparity.empty(); }
 };
 
+/// Where one file of a stereo camera (MPO, JPS) stands for a pair, `right` being empty, names its
+/// views FILE#0 and FILE#1. Throws UsageError where the right image is missing.
+void name_views(std::string& left, std::string& right);
+
 /// LEFT, RIGHT, and the options of the calibration and of maps in files, in the group that has
 /// begun. Options of matching are not among them (add_match_settings).
 void add_pair_settings(Settings& settings, PairInput& pair);
