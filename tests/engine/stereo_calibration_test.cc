@@ -342,6 +342,9 @@ TEST_F(CalibrationFiles, SizesOfImages) {
   EXPECT_EQ(error_of([&] { calibration.check_image_size(640, 480); }), "");
   EXPECT_EQ(error_of([&] { calibration.check_image_size(1280, 960); }),
             "the images are 1280x960, but the calibration is for 640x480");
+  EXPECT_EQ(error_of([&] { calibration.check_image_size(480, 640); }),
+            "the images are 480x640, but the calibration is for 640x480 (`orientation` stored "
+            "leaves images as files hold them)");
   const StereoCalibration kitti = read(kKitti);
   EXPECT_EQ(error_of([&] { kitti.check_image_size(1226, 370); }), "");
   EXPECT_EQ(error_of([&] { kitti.check_image_size(600, 370); }),
