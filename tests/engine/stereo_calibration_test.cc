@@ -100,6 +100,19 @@ const char* const kKitti =
     "P3: 7.0e+02 0 6.0e+02 -3.78e+02 0 7.0e+02 1.8e+02 0 0 0 1 0\n"
     "R0_rect: 1 0 0 0 1 0 0 0 1\n";
 
+const char* const kKalibr =
+    "cam0:\n  camera_model: pinhole\n  distortion_coeffs: [0.1, 0.02, 0.0, 0.0]\n"
+    "  distortion_model: equidistant\n  intrinsics: [300.0, 301.0, 159.5, 119.5]\n"
+    "  resolution: [320, 240]\ncam1:\n  T_cn_cnm1:\n  - [1.0, 0.0, 0.0, -0.12]\n"
+    "  - [0.0, 1.0, 0.0, 0.0]\n  - [0.0, 0.0, 1.0, 0.0]\n  - [0.0, 0.0, 0.0, 1.0]\n"
+    "  camera_model: pinhole\n  distortion_coeffs: []\n  distortion_model: none\n"
+    "  intrinsics: [300.0, 300.0, 159.5, 119.5]\n  resolution: [320, 240]\n";
+
+const char* const kJson = R"({"left": {"K": [[500, 0, 320], [0, 500, 240], [0, 0, 1]],
+  "dist": {"type_id": "opencv-matrix", "rows": 5, "cols": 1, "dt": "d", "data": [0.1, 0, 0, 0, 1]}},
+  "right": {"K": [500, 0, 320, 0, 500, 240, 0, 0, 1], "dist": []},
+  "R": [0, 0.1, 0], "T": [[-0.1], [0], [0]], "image_size": [640, 480], "lens_model": "radtan"})";
+
 class CalibrationFiles : public testing::Test {
  protected:
   StereoCalibration read(const std::string& text) {
@@ -379,7 +392,7 @@ TEST_F(CalibrationFiles, DamagedFilesEndInOneLine) {
       }
     }
   };
-  for (const std::string text : {kYaml, kXml, kMiddlebury, kKitti}) {
+  for (const std::string text : {kYaml, kXml, kMiddlebury, kKitti, kKalibr, kJson}) {
     for (std::size_t size = 1; size < text.size(); size += 29) {
       attempt(text.substr(0, size));
     }
