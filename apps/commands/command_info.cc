@@ -52,7 +52,6 @@ void print_table(const BuildInfo& build, const SystemInfo& system,
 SettingValue machine_json(const BuildInfo& build, const SystemInfo& system,
                           const scheduler::Topology& topology) {
   const scheduler::Machine& machine = topology.machine;
-  const std::optional<double> quota = scheduler::read_system_limits().processors;
   SettingValue nodes = SettingValue::array();
   for (const scheduler::NumaNode& node : topology.nodes) {
     nodes.push_back({{"node", node.number},
@@ -72,7 +71,6 @@ SettingValue machine_json(const BuildInfo& build, const SystemInfo& system,
           {"isa_available", available_instruction_sets()},
           {"isa_built", built_instruction_sets()},
           {"hardware_threads", machine.hardware_threads},
-          {"processor_quota", quota ? SettingValue(*quota) : SettingValue()},
           {"cores", machine.cores},
           {"numa_nodes", machine.numa_nodes},
           {"nodes", nodes},

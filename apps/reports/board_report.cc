@@ -13,8 +13,8 @@ void print_picture(const BoardPicture& picture) {
   if (!picture.left_out.empty()) {
     tell("rectify: left out: {}: {}\n", picture.name, picture.left_out);
   } else if (left_px > 0 && right_px > 0) {
-    tell("rectify: {}: corners off by {:.2f} and {:.2f} px; tilted {:.0f} degrees, {:.2g} m away\n",
-         picture.name, left_px, right_px, picture.tilt_degrees, picture.distance_m);
+    tell("rectify: {}: corners off by {:.2f} and {:.2f} px; tilted {:.0f} degrees\n", picture.name,
+         left_px, right_px, picture.tilt_degrees);
   } else {
     tell("rectify: {}: only the {} picture shows the board, corners off by {:.2f} px\n",
          picture.name, left_px > 0 ? "left" : "right", left_px + right_px);
@@ -54,7 +54,6 @@ SettingValue board_values(const BoardCalibration& board) {
                         {"left_rms_px", picture.rms_px[0]},
                         {"right_rms_px", picture.rms_px[1]},
                         {"tilt_degrees", picture.tilt_degrees},
-                        {"distance_m", picture.distance_m},
                         {"left_out", picture.left_out}});
   }
   return {{"pairs", board.pairs},

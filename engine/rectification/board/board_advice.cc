@@ -13,8 +13,9 @@ constexpr int kManyPairs = 10;
 /// Boards that face the camera leave its focal length open.
 constexpr double kTilted_degrees = 15;
 constexpr int kMinTilted = 2;
-constexpr double kMinDepthRatio = 1.3;
-constexpr double kLargeResidual_px = 1;
+constexpr std::array<std::string_view, 9> kNinths = {"upper left", "top",    "upper right",
+                                                     "left",       "middle", "right",
+                                                     "lower left", "bottom", "lower right"};
 
 }  // namespace
 
@@ -25,30 +26,16 @@ double BoardCalibration::covered_share(std::size_t camera) const {
 
 std::vector<std::string> BoardCalibration::advice() const {
   std::vector<std::string> next;
-  if (rms_px > kLargeResidual_px) {
-    next.push_back(fmt::format(
-        "corners are off by {:.1f} px: is the board flat and its squares square, were both "
-        "cameras released at one moment?",
-        rms_px));
-  }
-  // Ninths of a picture, in the order of need: corners of it, sides, middle.
-  constexpr std::array<std::string_view, 9> kNames = {"upper left",  "upper right", "lower left",
-                                                      "lower right", "left",        "right",
-                                                      "top",         "bottom",      "middle"};
-  constexpr std::array<std::array<int, 2>, 9> kPlaces = {
-      {{0, 0}, {2, 0}, {0, 2}, {2, 2}, {0, 1}, {2, 1}, {1, 0}, {1, 2}, {1, 1}}};
   for (std::size_t side = 0; side < 2; ++side) {
+    std::array<int, 9> ninths{};
+    for (std::size_t cell = 0; cell < corners[side].size(); ++cell) {
+      const std::size_t row = cell / kColumns * 3 / kRows;
+      ninths[3 * row + cell % kColumns * 3 / kColumns] += corners[side][cell];
+    }
     std::vector<std::string_view> places;
-    for (std::size_t k = 0; k < kNames.size(); ++k) {
-      const auto [x, y] = kPlaces[k];
-      int count = 0;
-      for (int row = y * kRows / 3; row < (y + 1) * kRows / 3; ++row) {
-        for (int column = x * kColumns / 3; column < (x + 1) * kColumns / 3; ++column) {
-          count += corners[side][static_cast<std::size_t>(row * kColumns + column)];
-        }
-      }
-      if (count == 0) {
-        places.push_back(kNames[k]);
+    for (std::size_t ninth = 0; ninth < ninths.size(); ++ninth) {
+      if (ninths[ninth] == 0) {
+        places.push_back(kNinths[ninth]);
       }
     }
     if (!places.empty()) {
@@ -56,23 +43,12 @@ std::vector<std::string> BoardCalibration::advice() const {
                                  side == 0 ? "left" : "right"));
     }
   }
-  int tilted = 0;
-  double nearest_m = 0;
-  double farthest_m = 0;
-  for (const BoardPicture& picture : pictures) {
-    if (picture.left_out.empty()) {
-      tilted += picture.tilt_degrees > kTilted_degrees ? 1 : 0;
-      nearest_m = nearest_m == 0 ? picture.distance_m : std::min(nearest_m, picture.distance_m);
-      farthest_m = std::max(farthest_m, picture.distance_m);
-    }
-  }
+  const auto tilted = std::ranges::count_if(pictures, [](const BoardPicture& picture) {
+    return picture.left_out.empty() && picture.tilt_degrees > kTilted_degrees;
+  });
   if (tilted < kMinTilted) {
     next.push_back(fmt::format("{} tilted more than {:.0f} degrees: focal lengths are uncertain",
                                tilted == 0 ? "none" : "only one", kTilted_degrees));
-  }
-  if (farthest_m < kMinDepthRatio * nearest_m) {
-    next.push_back(fmt::format("all at about {:.2g} m: some should be nearer or farther",
-                               (nearest_m + farthest_m) / 2));
   }
   if (pairs < kManyPairs) {
     next.push_back(fmt::format("only {} pairs show the board to both cameras: {} or more are usual",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/core/affine.hpp>
 #include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -27,7 +28,7 @@ constexpr double kMinArea = 2;
 constexpr double kWorthOfK3 = 0.05;
 constexpr double kMaxResidual_px = 1;
 constexpr double kMaxResidualRatio = 3;
-/// Of the width: more than poses of single pictures, and their median, are off.
+/// Of the width: more than poses of single pictures are off.
 constexpr double kMaxShareOff = 0.01;
 const cv::TermCriteria kConverged(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 100, 1e-9);
 
@@ -126,45 +127,37 @@ bool leave_out(const std::vector<std::size_t>& which, const std::vector<double>&
   return is_any;
 }
 
-/// A frame in that of a camera.
-struct BoardPose {
-  Eigen::Matrix3d rotation;
-  Eigen::Vector3d place;
-};
-
-/// How far corners are, in the right pictures of `both`, from where the left ones and the median of
-/// the cameras' poses put them. Least squares would follow a picture of two moments.
-std::vector<double> off_the_median_px(const BoardViews& both,
-                                      const std::array<std::vector<BoardPose>, 2>& poses,
-                                      const BoardCamera& right) {
-  std::array<std::vector<double>, 6> parts;
-  for (const std::size_t picture : both.pictures) {
-    const BoardPose& from = poses[0][picture];
-    const BoardPose& to = poses[1][picture];
-    const Eigen::Matrix3d rotation = to.rotation * from.rotation.transpose();
-    const Eigen::Vector3d turn = rotation_vector(rotation);
-    const Eigen::Vector3d place = to.place - rotation * from.place;
-    for (int i = 0; i < 3; ++i) {
-      parts[static_cast<std::size_t>(i)].push_back(turn(i));
-      parts[static_cast<std::size_t>(i) + 3].push_back(place(i));
-    }
-  }
-  std::array<double, 6> of{};
-  std::ranges::transform(parts, of.begin(), [](auto& part) { return upper_median(part); });
-  const Eigen::Matrix3d rotation = rotation_by({of[0], of[1], of[2]});
-  std::vector<double> off_px;
+/// Leaves out pictures of two moments, which least squares would follow: most of their corners are
+/// not where the left pictures and the pose that most of all agree on put them in the right ones.
+bool leave_out_two_moments(const BoardViews& both, const std::vector<cv::Affine3d>& left_poses,
+                           const BoardCamera& right, double tolerance_px,
+                           std::vector<BoardPicture>& pictures) {
+  std::vector<cv::Point3d> points;
+  std::vector<cv::Point2d> seen;
   for (std::size_t k = 0; k < both.pictures.size(); ++k) {
-    const BoardPose& from = poses[0][both.pictures[k]];
-    const Eigen::Vector3d turn = rotation_vector(rotation * from.rotation);
-    const Eigen::Vector3d place = rotation * from.place + Eigen::Vector3d(of[3], of[4], of[5]);
-    std::vector<cv::Point2f> expected;
-    cv::projectPoints(both.points_m[k], cv::Vec3d(turn.x(), turn.y(), turn.z()),
-                      cv::Vec3d(place.x(), place.y(), place.z()), right.matrix, right.distortion,
-                      expected);
-    off_px.push_back(cv::norm(expected, both.seen[1][k]) /
-                     std::sqrt(static_cast<double>(expected.size())));
+    for (const cv::Point3f& point : both.points_m[k]) {
+      points.push_back(left_poses[both.pictures[k]] * cv::Point3d(point));
+    }
+    seen.insert(seen.end(), both.seen[1][k].begin(), both.seen[1][k].end());
   }
-  return off_px;
+  cv::Mat turn;
+  cv::Mat place;
+  std::vector<int> agreeing;
+  cv::solvePnPRansac(points, seen, right.matrix, right.distortion, turn, place, false, 200,
+                     static_cast<float>(tolerance_px), 0.999, agreeing);
+  bool is_any = false;
+  std::ptrdiff_t first = 0;
+  for (std::size_t k = 0; k < both.pictures.size(); ++k) {
+    const auto count = static_cast<std::ptrdiff_t>(both.points_m[k].size());
+    const auto agree = std::ranges::count_if(
+        agreeing, [&](int corner) { return corner >= first && corner < first + count; });
+    if (2 * agree < count) {
+      pictures[both.pictures[k]].left_out = "its pictures are of two moments";
+      is_any = true;
+    }
+    first += count;
+  }
+  return is_any;
 }
 
 Camera camera_of(const BoardCamera& fitted) {
@@ -186,28 +179,22 @@ bool fit(const CalibrationBoard& board, cv::Size size, BoardCalibration& result)
                     result.pairs, result.pictures.size(), board.text, kMinPairs));
   }
   std::array<BoardCamera, 2> cameras;
-  std::array<std::vector<BoardPose>, 2> poses;
+  std::vector<cv::Affine3d> poses(result.pictures.size());  // in the frame of the left camera, last
   for (const std::size_t side : {1, 0}) {  // tilts are those that the left camera sees, if it does
     const BoardViews views = views_of(side, side, board, result.pictures);
     cameras[side] = fit_camera(views, size);
     if (leave_out(views.pictures, cameras[side].residuals_px, kMaxResidual_px, result.pictures)) {
       return false;
     }
-    poses[side].resize(result.pictures.size());
     for (std::size_t k = 0; k < views.pictures.size(); ++k) {
       BoardPicture& picture = result.pictures[views.pictures[k]];
-      BoardPose& pose = poses[side][views.pictures[k]];
-      Eigen::Vector3d turn;
-      cv::cv2eigen(cameras[side].turns[k], turn);
-      cv::cv2eigen(cameras[side].places[k], pose.place);
-      pose.rotation = rotation_by(turn);
+      cv::Affine3d& pose = poses[views.pictures[k]];
+      pose = cv::Affine3d(cameras[side].turns[k], cameras[side].places[k]);
       picture.rms_px[side] = cameras[side].residuals_px[k];
-      picture.tilt_degrees = degrees(std::acos(std::min(1.0, std::abs(pose.rotation(2, 2)))));
-      picture.distance_m = pose.place.norm();
+      picture.tilt_degrees = degrees(std::acos(std::min(1.0, std::abs(pose.rotation()(2, 2)))));
     }
   }
-  if (leave_out(both.pictures, off_the_median_px(both, poses, cameras[1]),
-                kMaxShareOff * size.width, result.pictures)) {
+  if (leave_out_two_moments(both, poses, cameras[1], kMaxShareOff * size.width, result.pictures)) {
     return false;
   }
   cv::Mat rotation;

@@ -18,7 +18,6 @@ struct BoardPicture {
   /// Distance of the corners from where the cameras see them, RMS in pixels; 0: none are seen.
   std::array<double, 2> rms_px = {};
   double tilt_degrees = 0;    ///< of the board's normal from the viewing direction
-  double distance_m = 0;      ///< from the camera to the first corner
   std::string left_out = {};  ///< why no camera is fitted to it; empty: one is
 };
 
@@ -39,7 +38,7 @@ struct BoardCalibration {
   /// Share of the cells of the left (0) or right picture with corners.
   [[nodiscard]] double covered_share(std::size_t camera) const;
   /// What to photograph next, a sentence each, the most useful first: parts of the pictures that no
-  /// board was in, tilts, distances, numbers that are missing. Empty: nothing.
+  /// board was in, tilts and numbers that are missing. Empty: nothing.
   [[nodiscard]] std::vector<std::string> advice() const;
 };
 
