@@ -240,6 +240,19 @@ def test_bad_options(sequence, options, message):
     assert "\n" not in str(problem.value)
 
 
+def test_frames_that_one_camera_dropped(sequence, tmp_path):
+    for side, dropped in [("left", 1), ("right", 3)]:
+        shutil.copytree(sequence / side, tmp_path / side)
+        (tmp_path / side / f"{dropped:06}.png").unlink()
+    frames = vantage.Sequence(**sides(tmp_path), **RANGE)
+    assert len(frames) == 4
+    with pytest.warns(UserWarning, match="2 frames are left out without a partner"):
+        for frame in frames:
+            left, right = frame.name.split(", ")
+            assert left.rsplit("/")[-1] == right.rsplit("/")[-1]
+    assert len(vantage.Sequence(**sides(tmp_path), **RANGE, pair_by="order")) == 5
+
+
 def test_inputs_that_are_missing(sequence):
     with pytest.raises(vantage.Error, match="missing"):
         vantage.Sequence(sequence / "missing", sequence / "right")
