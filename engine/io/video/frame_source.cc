@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <utility>
 
 #include "engine/error.h"
@@ -46,13 +45,6 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
   if (fs::is_directory(spec, ignored)) {
     return with_reading(open_image_folder(spec));
   }
-  // One page of an image file, such as "scan.tif#2".
-  if (const NumberedPart part = numbered_part(spec);
-      part.number && has_image_extension(part.file) && fs::exists(part.file, ignored)) {
-    PhotographReading of_part = reading;
-    of_part.page = part.number;
-    return open_frame_source(part.file.string(), of_part);
-  }
   if (fs::exists(spec, ignored)) {
     if (has_image_extension(spec)) {
       const fs::path path = spec;
@@ -61,16 +53,18 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
     }
     return std::make_unique<VideoFrames>(spec, kMainVideo, reading);
   }
+  if (const NumberedPart part = numbered_part(spec);
+      part.number && fs::is_regular_file(part.file, ignored)) {
+    if (has_image_extension(part.file)) {
+      PhotographReading of_page = reading;
+      of_page.page = part.number;
+      return open_frame_source(part.file.string(), of_page);
+    }
+    return std::make_unique<VideoFrames>(part.file.string(), *part.number, reading);
+  }
   if (const std::size_t mark = spec.rfind('#');
       mark != std::string::npos && fs::is_regular_file(spec.substr(0, mark), ignored)) {
-    int track = -1;
-    const char* end = spec.data() + spec.size();
-    const auto [parsed, error] = std::from_chars(spec.data() + mark + 1, end, track);
-    if (error != std::errc() || parsed != end || track < 0) {
-      throw UsageError(
-          fmt::format("{}: expected the number of a video track after #, from 0", spec));
-    }
-    return std::make_unique<VideoFrames>(spec.substr(0, mark), track, reading);
+    throw UsageError(fmt::format("{}: expected the number of a video track after #, from 0", spec));
   }
   if (spec.find('%') != std::string::npos) {
     return with_reading(open_image_pattern(spec));
