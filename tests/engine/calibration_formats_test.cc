@@ -291,6 +291,12 @@ TEST_F(CalibrationFormats, OrbSlamSettings) {
                                                     side("LEFT", rig.left, pair.left, 0) +
                                                     side("RIGHT", rig.right, pair.right, -bf))),
       rig);
+  // The same matrices as OpenCV's stereoRectify has them: the unit is not known.
+  const StereoCalibration of_opencv = read_stereo_calibration(
+      write("one.yaml", "%YAML:1.0\n" + side("LEFT", rig.left, pair.left, 0) +
+                            side("RIGHT", rig.right, pair.right, -bf)));
+  expect_depths(of_opencv, rig);
+  EXPECT_FALSE(of_opencv.metres_per_unit);
   const StereoCalibration rectified =
       read_stereo_calibration(write("rectified.yaml", rectified_camera));
   EXPECT_TRUE(rectified.is_rectified);

@@ -91,6 +91,13 @@ void find_relative_pose(const CalibrationNames& names, StereoReading& pair) {
     pair.relative = pose_between(pair.cameras[0], pair.cameras[1], {-length, 0, 0});
     pair.format = "ORB-SLAM";
   }
+  const bool is_in_metres = focal_baseline.entry != nullptr || from_right.entry != nullptr ||
+                            pair.cameras[1].from_previous || pair.cameras[1].from_body ||
+                            baseline.name == "Stereo.b";
+  if (!is_in_metres) {  // P1 and P2 of OpenCV, or a baseline
+    pair.metres_per_unit.reset();
+    pair.format = "OpenCV";
+  }
 }
 
 /// The right camera is to the right: of files that number their cameras, this tells which it is.

@@ -16,7 +16,8 @@ enum class CameraChoice { kPhotographs, kRectified };
 
 /// Two cameras of one list of entries. Where the second one stands, the first of these tells: R and
 /// T, Stereo.T_c1_c2, T_cn_cnm1, T_BS or T_cam_imu of both, R1, P1, R2 and P2, Camera.bf, a
-/// baseline; all but R and T are in metres. Throws Error for what is missing or wrong.
+/// baseline; in metres, but for R and T, projections without Camera.bf, and a baseline. Throws
+/// Error for what is missing or wrong.
 StereoCalibration from_names(const CalibrationNames& names, CameraChoice cameras,
                              const CalibrationChoice& choice, const std::string& file);
 
