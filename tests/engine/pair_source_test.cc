@@ -537,6 +537,7 @@ TEST(PairSource, OptionsAreChecked) {
   both.pairs = "p";
   refuse(both, "several kinds of input are given");
   PairSourceOptions packed = packed_in("s", {});
+  packed.stereo = "-";
   packed.packing.reset();
   refuse(packed, "stereo needs packing, such as sbsl");
   PairSourceOptions not_packed = two_cameras("l", "r");

@@ -146,16 +146,15 @@ void take_all_stereo(const AVFormatContext& input, const AVStream& stream, const
       reinterpret_cast<const AVStereo3D*>(side_data(stream, AV_PKT_DATA_STEREO3D));
   const auto* in_frame =
       reinterpret_cast<const AVStereo3D*>(side_data(frame, AV_FRAME_DATA_STEREO3D));
-  if (in_container != nullptr) {
+  if (lower_case_tag(stream, "stereo_mode").starts_with("anaglyph")) {
+    film.stereo = "an anaglyph (StereoMode of the container)";
+  } else if (in_container != nullptr) {
     const bool is_matroska = container.find("matroska") != std::string_view::npos;
     take_stereo(*in_container,
                 is_matroska ? "StereoMode of the container" : "st3d of the container", aspect,
                 is_panorama, film);
   } else if (in_frame != nullptr) {
     take_stereo(*in_frame, "frame packing of the bitstream", aspect, is_panorama, film);
-  } else if (const std::string mode = lower_case_tag(stream, "stereo_mode");
-             mode.starts_with("anaglyph")) {
-    film.stereo = "an anaglyph (StereoMode of the container)";
   }
 }
 
