@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <optional>
 #include <set>
 
@@ -152,7 +151,7 @@ CalibrationNames::CalibrationNames(CalibrationEntries entries) : entries_(std::m
     int count = 0;
     for (const CameraLabel camera : {CameraLabel::kFirst, CameraLabel::kSecond}) {
       for (const Value value : {Value::kMatrix, Value::kFx, Value::kProjection}) {
-        count += find_own(value, camera).entry != nullptr ? 1 : 0;
+        count += find(value, camera, Sharing::kOwn).entry != nullptr ? 1 : 0;
       }
     }
     if (count > most) {
@@ -196,38 +195,31 @@ CalibrationNames::Found CalibrationNames::find_named(std::string_view name, Came
   return {};
 }
 
-std::vector<CalibrationNames::Found> CalibrationNames::all_own(Value value,
-                                                               CameraLabel camera) const {
+std::vector<CalibrationNames::Found> CalibrationNames::all(Value value, CameraLabel camera,
+                                                           Sharing sharing) const {
   const NamesOfValue& names = names_of(value);
   std::vector<Found> all;
-  for (const std::string_view name : names.names) {
-    Found found = find_named(name, camera, [&](const CalibrationEntry& entry) {
-      return names.shape == Shape::kAny ||
-             (names.shape == Shape::kNumber) == (entry.values.size() == 1) ||
-             !entry.problem.empty();
-    });
-    if (found.entry != nullptr) {
-      all.push_back(std::move(found));
+  for (const CameraLabel label : {camera, CameraLabel::kNone}) {
+    for (const std::string_view name : names.names) {
+      Found found = find_named(name, label, [&](const CalibrationEntry& entry) {
+        return names.shape == Shape::kAny ||
+               (names.shape == Shape::kNumber) == (entry.values.size() == 1) ||
+               !entry.problem.empty();
+      });
+      if (found.entry != nullptr) {
+        all.push_back(std::move(found));
+      }
+    }
+    if (camera == CameraLabel::kNone || sharing == Sharing::kOwn || !may_be_shared(value)) {
+      break;
     }
   }
   return all;
 }
 
-CalibrationNames::Found CalibrationNames::find_own(Value value, CameraLabel camera) const {
-  std::vector<Found> all = all_own(value, camera);
-  return all.empty() ? Found() : std::move(all.front());
-}
-
-std::vector<CalibrationNames::Found> CalibrationNames::all(Value value, CameraLabel camera) const {
-  std::vector<Found> found = all_own(value, camera);
-  if (camera != CameraLabel::kNone && may_be_shared(value)) {
-    std::ranges::move(all_own(value, CameraLabel::kNone), std::back_inserter(found));
-  }
-  return found;
-}
-
-CalibrationNames::Found CalibrationNames::find(Value value, CameraLabel camera) const {
-  std::vector<Found> found = all(value, camera);
+CalibrationNames::Found CalibrationNames::find(Value value, CameraLabel camera,
+                                               Sharing sharing) const {
+  std::vector<Found> found = all(value, camera, sharing);
   return found.empty() ? Found() : std::move(found.front());
 }
 
@@ -241,7 +233,7 @@ const CalibrationEntry* CalibrationNames::coefficient(std::string_view name,
 std::vector<std::string> CalibrationNames::unknown_distortions() const {
   std::set<std::string> known;
   for (const CameraLabel camera : {CameraLabel::kNone, CameraLabel::kFirst, CameraLabel::kSecond}) {
-    known.insert(find_own(Value::kDistortion, camera).name);
+    known.insert(find(Value::kDistortion, camera, Sharing::kOwn).name);
   }
   const auto holds = [](std::string_view text, std::initializer_list<std::string_view> parts) {
     return std::ranges::any_of(

@@ -51,17 +51,16 @@ class CalibrationNames {
     std::string name;                         ///< as the file has it
     const CalibrationEntry* entry = nullptr;  ///< null: there is none
   };
-  /// The first entry with one of the value's names, and of a camera: what belongs to both of them
-  /// if it has none of its own. Single numbers and matrices do not stand for each other: k1 is a
-  /// coefficient or a matrix.
-  [[nodiscard]] Found find(CalibrationValue value, CameraLabel camera = CameraLabel::kNone) const;
-  [[nodiscard]] bool has(CalibrationValue value, CameraLabel camera = CameraLabel::kNone) const {
-    return find(value, camera).entry != nullptr;
-  }
+  /// Whether what belongs to both cameras counts for one that has none of its own.
+  enum class Sharing { kOwn, kShared };
+  /// The first entry with one of the value's names, and of a camera. Single numbers and matrices do
+  /// not stand for each other: k1 is a coefficient or a matrix.
+  [[nodiscard]] Found find(CalibrationValue value, CameraLabel camera = CameraLabel::kNone,
+                           Sharing sharing = Sharing::kShared) const;
   /// All of them, the camera's own first.
-  [[nodiscard]] std::vector<Found> all(CalibrationValue value, CameraLabel camera) const;
-  /// The first one, for a camera alone.
-  [[nodiscard]] Found find_own(CalibrationValue value, CameraLabel camera) const;
+  [[nodiscard]] std::vector<Found> all(CalibrationValue value, CameraLabel camera,
+                                       Sharing sharing = Sharing::kShared) const;
+  [[nodiscard]] bool has(CalibrationValue value) const { return find(value).entry != nullptr; }
   /// A coefficient of the lens (k1, k2, p1, p2, k3 …) in an entry of its own; null if there is
   /// none.
   [[nodiscard]] const CalibrationEntry* coefficient(std::string_view name,
@@ -87,7 +86,6 @@ class CalibrationNames {
 
   template <typename Fits>
   [[nodiscard]] Found find_named(std::string_view name, CameraLabel camera, const Fits& fits) const;
-  [[nodiscard]] std::vector<Found> all_own(CalibrationValue value, CameraLabel camera) const;
   [[nodiscard]] static bool is_label(std::string_view name);
 
   CalibrationEntries entries_;

@@ -213,8 +213,10 @@ StereoCalibration from_names(const CalibrationNames& names, CameraChoice cameras
 
 bool are_of_one_camera(const CalibrationNames& names) {
   const auto is_labelled = [&](Value value) {
-    return names.find_own(value, CameraLabel::kFirst).entry != nullptr ||
-           names.find_own(value, CameraLabel::kSecond).entry != nullptr;
+    return names.find(value, CameraLabel::kFirst, CalibrationNames::Sharing::kOwn).entry !=
+               nullptr ||
+           names.find(value, CameraLabel::kSecond, CalibrationNames::Sharing::kOwn).entry !=
+               nullptr;
   };
   return (names.has(Value::kMatrix) || names.has(Value::kFx)) && !is_labelled(Value::kMatrix) &&
          !is_labelled(Value::kFx) && !names.has(Value::kFocalBaseline) &&
