@@ -107,7 +107,7 @@ def tilted(scene):
 def test_rectification_is_that_of_the_program(scene, pair, tmp_path):
     calibration = tilted(scene)
     storage = cv2.FileStorage(str(tmp_path / "rig.yml"), cv2.FILE_STORAGE_WRITE)
-    for name, value in [("M1", calibration.K1), ("D1", np.array(calibration.D1)),
+    for name, value in [("M1", calibration.K1), ("D1", np.array([calibration.D1])),
                         ("M2", calibration.K2), ("R", calibration.R), ("T", calibration.T)]:
         storage.write(name, np.asarray(value, float))
     storage.release()
