@@ -1,4 +1,5 @@
 #include "engine/generation/layered_scene.h"
+#include "engine/image/transposed.h"
 #include "engine/rectification/stereo_calibration.h"
 #include "engine/rectification/vertical_error.h"
 #include "tests/apps/pair_fixture.h"
@@ -186,6 +187,13 @@ TEST_F(RectifyTest, ExchangedImagesAreWarnedOf) {
                       "--disparities=0:30", "--method", "ssd"}));
   EXPECT_TRUE(warned({"run", "--left", right, "--right", left, "-o", folder_ / "run",
                       "--disparities=0:30", "--method", "ssd"}));
+  const std::string upper = folder_ / "upper.png";
+  const std::string lower = folder_ / "lower.png";
+  write_photograph(upper, transposed(read_photograph(left)));
+  write_photograph(lower, transposed(read_photograph(right)));
+  const ProcessResult vertical = succeeds(run_vantage(
+      {"match", lower, upper, "-o", map, "--vertical", "--disparities=0:30", "--method", "ssd"}));
+  EXPECT_THAT(vertical.err, HasSubstr("upper and lower look exchanged"));
 }
 
 TEST_F(RectifyTest, CalibrationsThatDoNotFitAreWarnedOf) {
