@@ -54,7 +54,7 @@ TEST(FilmProperties, StereoModeOfMatroskaIsThePacking) {
                                                           {"block_lr", "al"},
                                                           {"block_rl", "ar"},
                                                           {"checkerboard_lr", ""},
-                                                          {"anaglyph_cyan_red", ""},
+
                                                           {"mono", ""}};
   for (const auto& [mode, packing] : expected) {
     SCOPED_TRACE(mode);

@@ -146,9 +146,7 @@ void take_all_stereo(const AVFormatContext& input, const AVStream& stream, const
       reinterpret_cast<const AVStereo3D*>(side_data(stream, AV_PKT_DATA_STEREO3D));
   const auto* in_frame =
       reinterpret_cast<const AVStereo3D*>(side_data(frame, AV_FRAME_DATA_STEREO3D));
-  if (lower_case_tag(stream, "stereo_mode").starts_with("anaglyph")) {
-    film.stereo = "an anaglyph (StereoMode of the container)";
-  } else if (in_container != nullptr) {
+  if (in_container != nullptr) {
     const bool is_matroska = container.find("matroska") != std::string_view::npos;
     take_stereo(*in_container,
                 is_matroska ? "StereoMode of the container" : "st3d of the container", aspect,
