@@ -50,19 +50,16 @@ void add_pair_source_settings(Settings& settings, PairSourceOptions& input) {
         .changes_results = false;
   };
   path("left", input.left, "SOURCE",
-       "Left frames: a folder, pattern (left/%06d.png), glob, video or stream (see --stereo)");
+       "Left frames: a folder, pattern (left/%06d.png), glob, video or stream");
   path("right", input.right, "SOURCE", "Right frames");
   settings.integer("offset", input.offset_frames, "N",
                    "Pair left frame i with right frame i + N, counted from the first of each");
   add_pair_by_setting(settings, input.pair_by);
   path("stereo", input.stereo, "SOURCE",
-       "Frames with both images, see --packing; a stream: - (standard input), a named pipe, "
-       "/dev/videoN, tcp:// or rtsp://");
+       "Frames with both images: film, folder or stream (-, tcp://, rtsp://)");
   settings.choice<StereoPacking>(
       "packing", input.packing, stereo_packing_names(),
-      "Stereo layout (ffmpeg's stereo3d names): sbsl side by side, left first; abl "
-      "above/below, left on top; sbs2l, ab2l half size; irl, icl rows or columns that take turns; "
-      "al pictures that take turns; auto: as the file says, or its two video tracks");
+      "Layout in ffmpeg's stereo3d names: sbsl side by side, abl above/below; auto: the file's");
   add_deinterlace_setting(settings, input.reading);
   add_raw_video_setting(settings, input.raw_video);
   path("pairs", input.pairs, "FILE.csv",

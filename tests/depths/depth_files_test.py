@@ -155,7 +155,6 @@ class DepthFiles(unittest.TestCase):
         for arguments, text in [
                 (map + ["--depth", "no.png"], "needs --calibration, or --focal-length and"),
                 (map + scale, "there is nothing to write"),
-                (map + scale + ["--cloud", "no.ply"], "expected --image FILE"),
                 (map + scale + ["--cloud", "no.ply", "--image", "u16.png"], "no such file"),
                 (map + scale + ["--depth", "no.jpg"], "expected a file name that ends in"),
                 (map + scale + ["--cloud", "no.ply", "--image", "scene/left.png", "--max-depth",
