@@ -46,8 +46,8 @@ struct FramePair {
   /// Whether the right image is needed. If not, fetch() and decode() save work where they can:
   /// `right` is then undefined, and its errors may go unnoticed.
   bool wants_right = true;
-  int index = 0;                        ///< of the pair in its source, counted from 0
-  std::array<int, 2> frames = {};       ///< of the left and right camera, see PairSource::frame_of()
+  int index = 0;                   ///< of the pair in its source, counted from 0
+  std::array<int, 2> frames = {};  ///< of the left and right camera, see PairSource::frame_of()
   std::array<FetchedFrame, 2> fetched;  ///< decode() makes the pair from it
   Photograph left;
   Photograph right;
@@ -94,7 +94,8 @@ struct Pairing {
   /// for other sources.
   std::vector<int> left_out = {};
 
-  /// Whether that many things of one camera are one for each of its frames, not for each of `pairs`.
+  /// Whether that many things of one camera are one for each of its frames, not for each of
+  /// `pairs`.
   [[nodiscard]] bool counts_frames(std::size_t camera, int things, int pairs) const {
     return camera < left_out.size() && left_out[camera] > 0 && things == pairs + left_out[camera];
   }
@@ -114,8 +115,8 @@ struct PairSourceOptions {
   std::optional<PairBy> pair_by;
   /// With left and right: sources of more cameras, paired with the left one without offset.
   std::vector<std::string> more;
-  /// One source whose frames hold both images, or whose two video tracks do; it may be a stream, see
-  /// is_stream_name().
+  /// One source whose frames hold both images, or whose two video tracks do; it may be a stream,
+  /// see is_stream_name().
   std::string stereo;
   std::optional<StereoPacking> packing;  ///< of `stereo`; empty: as the film says
   /// Of streams: rawvideo of this shape and frame rate (see StreamInput::open()).
