@@ -72,7 +72,7 @@ def test_a_map_that_measures_nothing_warns_once(pair):
     black = np.zeros((60, 80), np.uint8)
     matcher = vantage.Matcher(disparities=(0, 15))
     with pytest.warns(UserWarning, match="hardly a measurement") as caught:
-        results = [matcher.compute(black, black) for _ in range(2)]
+        results = [matcher.compute(black, black + 1) for _ in range(2)]
     assert len(caught) == 1 and caught[0].filename == __file__
     assert results[1].reliable_share < 0.1 and results[1].confidence.max() < 0.5
     good = matcher.compute(*pair)

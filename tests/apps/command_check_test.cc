@@ -121,7 +121,7 @@ TEST_F(CheckCommand, RefusesWhatNobodyCanMatch) {
   write_grey(pixel, 1, 1, 90);
   expect_one_line(check({pixel, pixel}), 1, "check", "makes no sense");
   expect_one_line(check({left_, black, "--packing", "sbsl"}), 2, "check", "--packing");
-  expect_one_line(check({left_}), 2, "check", "give --packing");
+  expect_one_line(check({left_}), 2, "check", "RIGHT is missing; --stereo needs --packing");
   expect_one_line(check({left_, pixel}), 1, "check", "160x120 and 1x1, expected equal sizes");
   expect_one_line(check({left_, folder_ / "none.png"}), 1, "check", "none.png");
 }

@@ -100,9 +100,9 @@ TEST(PixelBufferTest, RefusesWhatNoPhotographHas) {
   expect_refused({.data = values.data(), .width_px = 2, .height_px = 2, .channels = 2},
                  "2 channels");
   expect_refused({.width_px = 2, .height_px = 2}, "no pixels");
-  values[5] = std::numeric_limits<float>::quiet_NaN();
+  values[5] = std::numeric_limits<float>::infinity();
   expect_refused({.data = values.data(), .width_px = 4, .height_px = 3},
-                 "nan at pixel (1, 1), expected finite values");
+                 "inf at pixel (1, 1), expected finite values");
 }
 
 TEST(PairMatcherTest, FindsTheRangeOfEachPair) {

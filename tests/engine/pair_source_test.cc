@@ -539,7 +539,7 @@ TEST(PairSource, OptionsAreChecked) {
   PairSourceOptions packed = packed_in("s", {});
   packed.stereo = "-";
   packed.packing.reset();
-  refuse(packed, "stereo needs packing, such as sbsl");
+  refuse(packed, "`stereo` needs `packing`, such as sbsl");
   PairSourceOptions not_packed = two_cameras("l", "r");
   not_packed.packing = StereoPacking{};
   refuse(not_packed, "packing is given without stereo");

@@ -206,7 +206,7 @@ void PairSourceOptions::validate() const {
     throw UsageError("more is given, expected it with left and right only");
   }
   if (is_stream_name(stereo) && !packing) {
-    throw UsageError("stereo needs packing, such as sbsl: a stream does not say it");
+    throw UsageError("`stereo` needs `packing`, such as sbsl: a stream does not say it");
   }
   if (packing && stereo.empty()) {
     throw UsageError("packing is given without stereo");

@@ -75,7 +75,7 @@ StereoPacking packing_of_film(const std::string& file, const FilmProperties* fil
                               std::vector<std::string>& notes) {
   if (film == nullptr || !film->packing) {
     throw UsageError(fmt::format(
-        "stereo needs packing, such as sbsl: {} {}", file,
+        "`stereo` needs `packing`, such as sbsl: {} {}", file,
         film != nullptr && !film->stereo.empty()
             ? fmt::format("is {}, which is not read", film->stereo)
         : film != nullptr && film->tracks > 2
