@@ -301,6 +301,13 @@ TEST_F(CalibrationFormats, OrbSlamSettings) {
       read_stereo_calibration(write("rectified.yaml", rectified_camera));
   EXPECT_TRUE(rectified.is_rectified);
   EXPECT_NEAR(rectified.baseline(), pair.baseline, 1e-9);
+  // Version 3 has one camera for rectified images.
+  const StereoCalibration of_one = read_stereo_calibration(write(
+      "one_camera.yaml", "%YAML:1.0\nCamera.type: \"Rectified\"\n" +
+                             camera(1, {.matrix = pair.left.matrix, .distortion = {0, 0, 0, 0}}) +
+                             "Stereo.b: 0.12\n"));
+  EXPECT_TRUE(of_one.is_rectified);
+  EXPECT_NEAR(of_one.baseline(), 0.12, 1e-9);
   // OpenVSLAM: the same, with a node of the rectification.
   std::string open = fmt::format(
       "Camera:\n  model: perspective\n  fx: {}\n  fy: {}\n  cx: 1\n"

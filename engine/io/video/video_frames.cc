@@ -53,7 +53,7 @@ std::vector<std::string> VideoFrames::remarks() const {
                     first_field));
   } else if (film_.is_interlaced) {
     add(fmt::format(
-        "is interlaced, {} field first: {}", first_field,
+        "it is interlaced, {} field first: {}", first_field,
         handling_.deinterlacing != Deinterlacing::kNone ? "its pictures are deinterlaced (bwdif)"
         : handling_.takes_fields_apart ? "the two fields of a picture are the two images"
                                        : "edges that move are combs; `deinterlace` mends them"));
@@ -65,7 +65,7 @@ std::vector<std::string> VideoFrames::remarks() const {
     add("its display matrix turns by no multiple of 90 degrees: pictures are as stored");
   }
   if (!film_.further_views.empty()) {
-    add(fmt::format("holds {}, of which only the base view is read", film_.further_views));
+    add(fmt::format("it holds {}, of which only the base view is read", film_.further_views));
   }
   return remarks;
 }

@@ -82,7 +82,7 @@ const std::vector<NamesOfValue>& names_of_values() {
         "rotationVector", "om", "rodrigues"}},
       {Value::kTranslation,
        Shape::kSeveral,
-       {"T", "translation", "translationVector", "trans", "TStereo", "stereoT", "tvec"}},
+       {"T", "translation", "translationVector", "trans", "trns", "TStereo", "stereoT", "tvec"}},
       {Value::kFromRight, Shape::kSeveral, {"Stereo.T_c1_c2", "T_c1_c2", "Tlr"}},
       {Value::kDepthMatrix, Shape::kSeveral, {"Q", "disparityToDepth", "dispToDepth"}},
       {Value::kBaseline, Shape::kNumber, {"Stereo.b", "baseline"}},

@@ -188,7 +188,10 @@ StereoCalibration from_names(const CalibrationNames& names, CameraChoice cameras
   StereoReading pair;
   pair.cameras = {read_camera(names, CameraLabel::kFirst),
                   read_camera(names, CameraLabel::kSecond)};
-  const auto& [left, right] = pair.cameras;
+  auto& [left, right] = pair.cameras;
+  if (!right.matrix && !names.has(Value::kTranslation) && names.has(Value::kBaseline)) {
+    right = left;  // ORB-SLAM3 writes the first of two rectified cameras only
+  }
   std::optional<StereoCalibration> calibration;
   if (cameras == CameraChoice::kRectified || (!left.matrix && !right.matrix)) {
     calibration = rectified_of(names, pair.cameras);
