@@ -46,7 +46,7 @@ void choose_disparities(const Settings& settings, const CommonOptions& common,
   report.set_settings(reported_settings(settings, options));
   if (!common.quiet) {
     tell("{}: --disparities auto is {}{}\n", settings.command(), to_text(range),
-         -range.min > 2 * range.max ? ", mostly negative: left and right look exchanged" : "");
+         -range.min > 2 * range.max ? ", mostly negative: the images look exchanged" : "");
   }
 }
 

@@ -180,7 +180,7 @@ TEST_F(AutomaticDisparities, IsWhatCommandsDoUnlessARangeIsGiven) {
 TEST_F(AutomaticDisparities, ExchangedImagesAreToldAndNoPngIsBegun) {
   const ProcessResult map = succeeds(run_vantage(
       {"match", right_, left_, "-o", folder_ / "d.pfm", "--report", folder_ / "r.json"}));
-  EXPECT_THAT(map.err, HasSubstr("mostly negative: left and right look exchanged"));
+  EXPECT_THAT(map.err, HasSubstr("mostly negative: the images look exchanged"));
   const auto report = read_json(folder_ / "r.json");
   if (report["results"].contains("rectification")) {  // points enough to tell
     EXPECT_TRUE(report["results"]["rectification"]["looks_exchanged"].get<bool>());
