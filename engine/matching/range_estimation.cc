@@ -127,7 +127,7 @@ struct Agreement {
     for (const MatchedRegion& region : regions) {
       cells |= region.cells;
     }
-    const std::uint64_t counted = 0x0101010101010101 * ((0xFFU << first_column) & 0xFFU);
+    const std::uint64_t counted = 0x0101010101010101U * ((0xFFU << first_column) & 0xFFU);
     return static_cast<double>(std::popcount(cells & counted)) / std::popcount(counted);
   }
   /// Share of the matches below `half_pixels_end` half pixels; 0 if there are none.
