@@ -57,9 +57,11 @@ SizedCamera camera_of(const Json& document, const Json& frame, const std::string
     throw Error(fmt::format("{} has no fl_x and no camera_angle_x", where));
   }
   const double fx = focal.value_or(sized.size.width_px / 2.0 / std::tan(angle.value_or(1) / 2));
+  const double fy = number("fl_y").value_or(fx);
   // Their pixel centres are at halves.
-  sized.camera.matrix << fx, 0, number("cx").value_or(sized.size.width_px / 2.0) - 0.5, 0,
-      number("fl_y").value_or(fx), number("cy").value_or(sized.size.height_px / 2.0) - 0.5, 0, 0, 1;
+  const double cx = number("cx").value_or(sized.size.width_px / 2.0) - 0.5;
+  const double cy = number("cy").value_or(sized.size.height_px / 2.0) - 0.5;
+  sized.camera.matrix << fx, 0, cx, 0, fy, cy, 0, 0, 1;
   const bool is_fisheye = document.value("camera_model", Json()) == "OPENCV_FISHEYE";
   sized.camera.lens = is_fisheye ? LensKind::kFisheye : LensKind::kStandard;
   const auto keys =

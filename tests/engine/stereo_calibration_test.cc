@@ -108,6 +108,10 @@ const char* const kKalibr =
     "  camera_model: pinhole\n  distortion_coeffs: []\n  distortion_model: none\n"
     "  intrinsics: [300.0, 300.0, 159.5, 119.5]\n  resolution: [320, 240]\n";
 
+const char* const kOrbSlam =
+    "%YAML:1.0\nCamera.fx: 300.0\nCamera.fy: 300.0\nCamera.cx: 159.5\nCamera.cy: 119.5\n"
+    "Camera.k1: 0.0\nCamera.bf: 36.0\n";
+
 const char* const kJson = R"({"left": {"K": [[500, 0, 320], [0, 500, 240], [0, 0, 1]],
   "dist": {"type_id": "opencv-matrix", "rows": 5, "cols": 1, "dt": "d", "data": [0.1, 0, 0, 0, 1]}},
   "right": {"K": [500, 0, 320, 0, 500, 240, 0, 0, 1], "dist": []},
@@ -392,7 +396,7 @@ TEST_F(CalibrationFiles, DamagedFilesEndInOneLine) {
       }
     }
   };
-  for (const std::string text : {kYaml, kXml, kMiddlebury, kKitti, kKalibr, kJson}) {
+  for (const std::string text : {kYaml, kXml, kMiddlebury, kKitti, kKalibr, kJson, kOrbSlam}) {
     for (std::size_t size = 1; size < text.size(); size += 29) {
       attempt(text.substr(0, size));
     }

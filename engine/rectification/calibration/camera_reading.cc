@@ -87,9 +87,13 @@ void read_matrix(const CalibrationNames& names, CameraLabel camera, CameraReadin
       }
       return number_of(number);
     };
+    // Before the matrix: Eigen's list of coefficients must not be left by an exception.
+    const double focal_x = number_of(fx);
+    const double focal_y = of(Value::kFy, "fy");
+    const double centre_x = of(Value::kCx, "cx");
+    const double centre_y = of(Value::kCy, "cy");
     reading.matrix.emplace();
-    *reading.matrix << number_of(fx), 0, of(Value::kCx, "cx"), 0, of(Value::kFy, "fy"),
-        of(Value::kCy, "cy"), 0, 0, 1;
+    *reading.matrix << focal_x, 0, centre_x, 0, focal_y, centre_y, 0, 0, 1;
   }
 }
 
