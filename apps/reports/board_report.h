@@ -8,7 +8,7 @@ namespace vantage::apps {
 /// What pictures of a board gave, on stderr: residuals of every picture, what is left out, the
 /// coverage of both pictures, what to photograph next.
 void print_board(const BoardCalibration& board);
-/// The same, for reports.
+/// What print_board() prints, as values of the report.
 SettingValue board_values(const BoardCalibration& board);
 
 }  // namespace vantage::apps

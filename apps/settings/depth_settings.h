@@ -41,7 +41,7 @@ class DepthGeometry {
   [[nodiscard]] const Rectifier* rectifier() const {
     return rectifier_ && rectifier_->needs_rectification() ? &*rectifier_ : nullptr;
   }
-  /// Of the calibration; none without one.
+  /// What was assumed when the calibration was read; empty without a calibration.
   [[nodiscard]] std::span<const Remark> remarks() const {
     return rectifier_ ? std::span<const Remark>(rectifier_->pair().remarks)
                       : std::span<const Remark>();

@@ -12,11 +12,11 @@ struct PhotographReading {
   /// Pictures of films are made of both fields by FFmpeg's filter bwdif, where they are flagged as
   /// interlaced; where the film flags none, all.
   bool deinterlaces = false;
-  /// Of files with other channels than grey, RGB and alpha: the band that is read, counted from 1.
+  /// Which band is read, counted from 1, where a file has other channels than grey, RGB and alpha.
   /// Empty: see read_photograph().
   std::optional<int> band = {};
-  /// Of files of several pictures, counted from 0: pages of TIFF, views of MPO and JPS. Empty: the
-  /// first page or view; a JPS file whole.
+  /// Which picture of a file is read, counted from 0: a page of a TIFF, a view of an MPO or JPS.
+  /// Empty: the first one, or the whole JPS.
   std::optional<int> page = {};
 
   friend bool operator==(const PhotographReading&, const PhotographReading&) = default;
