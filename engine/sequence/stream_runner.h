@@ -1,7 +1,7 @@
 #pragma once
 
 #include "engine/execution.h"
-#include "engine/io/video/raw_video.h"
+#include "engine/io/video/writing/streamed_video_writer.h"
 #include "engine/sequence/sequence_runner.h"
 
 namespace vantage {

@@ -5,7 +5,7 @@
 
 #include "engine/io/video/libav.h"
 #include "engine/io/video/libav_functions.h"
-#include "engine/io/video/video_join.h"
+#include "engine/io/video/writing/video_join.h"
 #include "tests/apps/stream_fixture.h"
 
 extern "C" {

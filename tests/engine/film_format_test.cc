@@ -1,9 +1,9 @@
 #include "engine/io/video/film_format.h"
 
-#include "engine/io/video/frame_conversion.h"
 #include "engine/io/video/stated_format.h"
 #include "engine/io/video/video_io.h"
-#include "engine/io/video/video_join.h"
+#include "engine/io/video/writing/frame_conversion.h"
+#include "engine/io/video/writing/video_join.h"
 #include "tests/engine/engine_test.h"
 
 extern "C" {

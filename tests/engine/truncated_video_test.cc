@@ -1,8 +1,8 @@
 // Video files that end too early.
 
 #include "engine/io/video/video_io.h"
-#include "engine/io/video/video_join.h"
 #include "engine/io/video/video_structure.h"
+#include "engine/io/video/writing/video_join.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 

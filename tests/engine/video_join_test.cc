@@ -1,4 +1,4 @@
-#include "engine/io/video/video_join.h"
+#include "engine/io/video/writing/video_join.h"
 
 extern "C" {
 #include <libavformat/avformat.h>

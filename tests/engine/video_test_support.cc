@@ -1,7 +1,7 @@
 #include "tests/engine/video_test_support.h"
 
-#include "engine/io/video/frame_conversion.h"
 #include "engine/io/video/libav.h"
+#include "engine/io/video/writing/frame_conversion.h"
 #include "tests/engine/engine_test.h"
 
 extern "C" {

@@ -13,7 +13,7 @@
 #include "engine/io/files/file_descriptor.h"
 #include "engine/io/files/temporary_name.h"
 #include "engine/io/video/frame_rate.h"
-#include "engine/io/video/video_join.h"
+#include "engine/io/video/writing/video_join.h"
 
 namespace vantage {
 namespace {

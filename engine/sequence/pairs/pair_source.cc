@@ -11,8 +11,8 @@
 #include "engine/error.h"
 #include "engine/image/orientation.h"
 #include "engine/io/video/image_sequence.h"
-#include "engine/io/video/raw_video.h"
 #include "engine/io/video/stream_input.h"
+#include "engine/io/video/streamed_video.h"
 #include "engine/sequence/pairs/every_nth_pair.h"
 #include "engine/sequence/pairs/live_pairs.h"
 #include "engine/sequence/pairs/masked_pairs.h"
@@ -38,7 +38,8 @@ std::unique_ptr<PairSource> open_pair_list(const std::filesystem::path& file,
   std::vector<std::filesystem::path> left;
   std::vector<std::filesystem::path> right;
   std::vector<PairDetails> details;
-  FramePairing pairing{.first = {0, 0}};  // whoever writes a list means it
+  FramePairing pairing;
+  pairing.first = {0, 0};  // whoever writes a list means it
   for (ListedPair& pair : read_pair_list(file, &pairing.remarks)) {
     left.push_back(std::move(pair.left));
     right.push_back(std::move(pair.right));

@@ -1,4 +1,4 @@
-#include "engine/io/video/video_encoder.h"
+#include "engine/io/video/writing/video_encoder.h"
 
 #include <new>
 #include <string>

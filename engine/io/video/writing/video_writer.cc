@@ -6,11 +6,11 @@
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
-#include "engine/io/video/frame_conversion.h"
 #include "engine/io/video/libav_functions.h"
-#include "engine/io/video/video_encoder.h"
 #include "engine/io/video/video_io.h"
-#include "engine/io/video/video_muxer.h"
+#include "engine/io/video/writing/frame_conversion.h"
+#include "engine/io/video/writing/video_encoder.h"
+#include "engine/io/video/writing/video_muxer.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

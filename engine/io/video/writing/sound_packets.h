@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/io/video/libav.h"
-#include "engine/io/video/video_join.h"
+#include "engine/io/video/writing/video_join.h"
 
 struct AVCodecParameters;
 struct AVRational;

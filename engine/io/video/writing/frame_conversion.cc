@@ -1,4 +1,4 @@
-#include "engine/io/video/frame_conversion.h"
+#include "engine/io/video/writing/frame_conversion.h"
 
 #include <algorithm>
 #include <array>

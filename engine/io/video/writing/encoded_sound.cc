@@ -7,7 +7,7 @@
 
 #include "engine/error.h"
 #include "engine/io/video/libav_functions.h"
-#include "engine/io/video/sound_packets.h"
+#include "engine/io/video/writing/sound_packets.h"
 
 extern "C" {
 #include <libavcodec/avcodec.h>

@@ -1,4 +1,4 @@
-#include "engine/io/video/video_muxer.h"
+#include "engine/io/video/writing/video_muxer.h"
 
 #include <fmt/format.h>
 

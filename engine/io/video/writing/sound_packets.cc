@@ -1,4 +1,4 @@
-#include "engine/io/video/sound_packets.h"
+#include "engine/io/video/writing/sound_packets.h"
 
 #include <fmt/format.h>
 

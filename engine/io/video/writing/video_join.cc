@@ -1,4 +1,4 @@
-#include "engine/io/video/video_join.h"
+#include "engine/io/video/writing/video_join.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 #include "engine/error.h"
 #include "engine/io/video/libav.h"
 #include "engine/io/video/libav_functions.h"
-#include "engine/io/video/sound_packets.h"
-#include "engine/io/video/video_muxer.h"
 #include "engine/io/video/video_structure.h"
+#include "engine/io/video/writing/sound_packets.h"
+#include "engine/io/video/writing/video_muxer.h"
 
 extern "C" {
 #include <libavformat/avformat.h>
