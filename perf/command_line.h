@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -40,6 +41,12 @@ class CommandLine {
             name, [&value](int given) { value = given; }, text)
         ->check(CLI::Range(1, 1'000'000))
         ->type_name("N");
+  }
+  /// One of the names of a table.
+  template <typename T>
+  void choice(const std::string& name, std::string& value, const std::map<std::string, T>& names,
+              const std::string& text) {
+    app_.add_option(name, value, text)->check(CLI::IsMember(&names))->capture_default_str();
   }
   void size(int& width, int& height, const std::string& text = "Size of the images") {
     app_.add_option_function<std::string>(

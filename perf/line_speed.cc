@@ -1,5 +1,5 @@
-// Speed of the whole line: H.264 side by side in, both maps as 16-bit PNG and a view as H.264 out,
-// of a generated moving scene, beside the loop of an OpenCV user, interleaved in one run. Prints
+// Speed of the whole line: a film of photographs in, H.264 side by side; both maps as 16-bit PNG
+// and a view as H.264 out. Beside it the loop of an OpenCV user, interleaved in one run. Prints
 // frames/s, core-seconds and what each step costs; --json FILE writes the numbers.
 
 #include <fmt/format.h>
@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -15,7 +16,9 @@
 #include "engine/matching/options/method_names.h"
 #include "engine/simd.h"
 #include "perf/command_line.h"
+#include "perf/default_paths.h"
 #include "perf/figures.h"
+#include "perf/photograph_film.h"
 #include "perf/sequence_inputs.h"
 #include "perf/sequence_timing.h"
 
@@ -24,54 +27,50 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kVideoFrames = 32;
+constexpr int kFilmFrames = 48;
 /// A chunk is longer than a run, so that its videos end after the clock.
 constexpr int kChunkFrames = 1000;
+
+/// What is made of each frame.
+enum class Results { kMapsAndView, kMaps, kDepthFilm };
+const std::map<std::string, Results> kResults = {{"maps-and-view", Results::kMapsAndView},
+                                                 {"maps", Results::kMaps},
+                                                 {"depth-film", Results::kDepthFilm}};
 
 struct Settings {
   int width = 1920;
   int height = 1080;
-  int disparities = 128;
-  std::string preset = "fast";
+  int disparities = 192;
+  std::string preset = "realtime";
+  std::string results = "maps-and-view";
   int frames = 40;  ///< after the warm-up
   int rounds = 3;
   int threads = scheduler::detect_machine().hardware_threads;
   std::optional<int> in_flight;
-  std::optional<fs::path> folder;  ///< keeps the generated video for the next run
+  std::optional<fs::path> film;
+  std::vector<fs::path> pair;
   std::optional<std::string> json;
 };
 
-/// A camera that moves sideways before moving objects. The file is made once.
-SequenceInputs generate_video(const Settings& settings, const fs::path& folder) {
-  const fs::path file =
-      folder / fmt::format("{}x{}x{}.mp4", settings.width, settings.height, settings.disparities);
+/// The film that is given, or one of the pair that is given or at hand.
+SequenceInputs find_film(const Settings& settings, const fs::path& folder) {
   SequenceInputs inputs;
-  inputs.name = file.stem();
-  inputs.video_file = file;
-  inputs.video.stereo = file.string();
+  if (settings.film) {
+    inputs.name = settings.film->filename();
+    inputs.video_file = *settings.film;
+  } else {
+    const fs::path photograph = fs::path(kDefaultData) / "motorcycle";
+    const FilmedPair pair = !settings.pair.empty()
+                                ? read_pair(settings.pair.at(0), settings.pair.at(1))
+                            : fs::exists(photograph / "im0.png")
+                                ? read_pair(photograph / "im0.png", photograph / "im1.png")
+                                : generated_pair();
+    inputs.name = pair.name;
+    inputs.video_file = folder / "film.mp4";
+    write_film(pair, {settings.width, settings.height}, kFilmFrames, inputs.video_file);
+  }
+  inputs.video.stereo = inputs.video_file.string();
   inputs.video.packing = StereoPacking{};
-  if (fs::exists(file)) {
-    return inputs;
-  }
-  LayeredSceneOptions options;
-  options.width_px = settings.width;
-  options.height_px = settings.height;
-  options.samples_per_side = 1;
-  options.near_disparity_px = 0.95 * settings.disparities;
-  options.far_disparity_px = 0.1 * settings.disparities;
-  options.noise_sigma = 1;
-  Execution execution({});
-  const LayeredScene scene(options, execution);
-  VideoWriter writer(file, 2 * options.width_px, options.height_px, {});
-  Photograph packed;
-  for (int frame = 0; frame < kVideoFrames; ++frame) {
-    constexpr double kStepInBaselines = 0.02;
-    const double x = kStepInBaselines * frame;
-    pack_stereo(scene.render({x, 0}, frame).image, scene.render({x + 1, 0}, frame).image, {},
-                packed);
-    writer.write(packed);
-  }
-  writer.finish();
   return inputs;
 }
 
@@ -79,12 +78,21 @@ SequenceOptions line_options(const Settings& settings, MatchPreset preset) {
   SequenceOptions options;
   options.match.preset = preset;
   options.match.disparities = {0, settings.disparities - 1};
-  options.save = {SequenceOutput::kDisparity, SequenceOutput::kRightDisparity,
-                  SequenceOutput::kViews};
   options.map_format = "png";
-  options.video = {SequenceOutput::kViews};
-  options.views = {ViewPath::fixed(BaselinePosition{0.5, 0})};
   options.chunk_frames = kChunkFrames;
+  switch (kResults.at(settings.results)) {
+    case Results::kMaps:
+      options.save = {SequenceOutput::kDisparity, SequenceOutput::kRightDisparity};
+      break;
+    case Results::kDepthFilm:
+      options.save = {SequenceOutput::kDepthVideo};
+      break;
+    case Results::kMapsAndView:
+      options.save = {SequenceOutput::kDisparity, SequenceOutput::kRightDisparity,
+                      SequenceOutput::kViews};
+      options.video = {SequenceOutput::kViews};
+      options.views = {ViewPath::fixed(BaselinePosition{0.5, 0})};
+  }
   return options;
 }
 
@@ -111,7 +119,7 @@ nlohmann::json print_row(const std::string& name, const std::vector<FrameTime>& 
 }
 
 nlohmann::json measure(const Settings& settings, MatchPreset preset, const fs::path& folder) {
-  const SequenceInputs inputs = generate_video(settings, folder);
+  const SequenceInputs inputs = find_film(settings, folder);
   const SequenceOptions options = line_options(settings, preset);
   const int frames = kWarmUpFrames + settings.frames + 1;
   const fs::path results = folder / fmt::format("line_speed-{}", ::getpid());
@@ -128,9 +136,9 @@ nlohmann::json measure(const Settings& settings, MatchPreset preset, const fs::p
                                  settings.threads, results / "opencv"));
   }
   fs::remove_all(results);
-  const std::string title = fmt::format("{}x{}, {} candidates, {} threads, {} frames of {} rounds",
-                                        settings.width, settings.height, settings.disparities,
-                                        settings.threads, settings.frames, settings.rounds);
+  const std::string title = fmt::format(
+      "film of {}, {}; {} candidates, {} threads, {} frames of {} rounds", inputs.name,
+      settings.results, settings.disparities, settings.threads, settings.frames, settings.rounds);
   fmt::print("\n{}\n{:<26} {:>9} {:>14} {:>14} {:>12} {:>18}\n", title, "", "frames/s",
              "ms per frame", "core-s/frame", "cores busy", "ms to OpenCV");
   nlohmann::json rows = nlohmann::json::array();
@@ -150,17 +158,21 @@ nlohmann::json measure(const Settings& settings, MatchPreset preset, const fs::p
 
 int run_benchmark(int argc, char** argv) {
   CommandLine line(
-      "A run from a side-by-side H.264 video to both maps as 16-bit PNG and a view as H.264, "
-      "against the loop of an OpenCV user");
+      "A run from a side-by-side film of photographs to both maps as 16-bit PNG and a view as "
+      "H.264, against the loop of an OpenCV user: one map of StereoSGBM three-way as PNG");
   Settings settings;
-  line.size(settings.width, settings.height);
+  line.option("--film", settings.film, "Film, side by side; replaces --pair and --size");
+  line.option("--pair", settings.pair,
+              "LEFT RIGHT: photographs that a film is made of; Middlebury's motorcycle where it is "
+              "at hand, else a generated scene");
+  line.size(settings.width, settings.height, "Size of each image of the film that is made");
+  line.choice("--results", settings.results, kResults, "What is made of each frame");
   line.option("--preset", settings.preset, "Preset of the run");
   line.number("--disparities", settings.disparities, "Candidate disparities");
   line.number("--frames", settings.frames, "Frames that are timed, after the warm-up");
   line.rounds(settings.rounds);
   line.threads(settings.threads);
   line.number("--in-flight", settings.in_flight, "Frames in flight; threads + 2 by default");
-  line.option("--folder", settings.folder, "Keep the generated video here for the next run");
   line.json(settings.json);
   line.parse(argc, argv);
   const auto& names = names_of(MatchPreset{});
@@ -171,13 +183,13 @@ int run_benchmark(int argc, char** argv) {
   }
   cv::setNumThreads(1);
   fmt::print("instruction set {}, {} threads\n", instruction_set_in_use(), settings.threads);
-  const fs::path folder = settings.folder.value_or(fs::temp_directory_path() /
-                                                   fmt::format("line_speed-{}", ::getpid()));
+  if (!settings.pair.empty() && settings.pair.size() != 2) {
+    line.refuse("--pair takes two photographs, the left one first");
+  }
+  const fs::path folder = fs::temp_directory_path() / fmt::format("line_speed-{}", ::getpid());
   fs::create_directories(folder);
   const nlohmann::json table = measure(settings, preset->second, folder);
-  if (!settings.folder) {
-    fs::remove_all(folder);
-  }
+  fs::remove_all(folder);
   write_json(settings.json, table);
   return 0;
 }

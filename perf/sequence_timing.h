@@ -68,9 +68,7 @@ inline RunTiming time_run(const PairSourceOptions& input, const SequenceOptions&
 /// same library.
 inline FrameTime time_opencv(const SequenceInputs& inputs, DisparityRange range, bool from_video,
                              int frames, int threads, const std::filesystem::path& folder) {
-  for (const char* name : {"disparity", "right-disparity", "views"}) {
-    std::filesystem::create_directories(folder / name);
-  }
+  std::filesystem::create_directories(folder);
   cv::setNumThreads(threads);
   OpenCvLoop loop(range);
   std::optional<Stopwatch> watch;
