@@ -77,7 +77,7 @@ DepthFiles make_depth_files(const DepthOutputs& outputs, const CloudSource& sour
     Image<float> depth_m;
     depth_map(source.disparity_px, source.camera.scale,
               max_depth_in(outputs.depth, outputs.options), execution, depth_m);
-    encode_depth(outputs.depth, depth_m.view(), files.depth);
+    encode_depth(outputs.depth, depth_m.view(), files.depth, &execution);
     SettingValue values = depth_values(depth_m.view());
     const double share = values["known_share"].get<double>();
     files.summaries.push_back(

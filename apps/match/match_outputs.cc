@@ -8,10 +8,11 @@
 namespace vantage::apps {
 namespace {
 
-void write_map(const MatchJob& job, const std::string& path, const DisparityMaps& maps, Side side) {
+void write_map(const MatchJob& job, const std::string& path, const DisparityMaps& maps, Side side,
+               Execution& execution) {
   const MatchedMap& map = maps.of(side);
   if (!job.match.disparities_y) {
-    write_disparity(path, map.disparity_px.view());
+    write_disparity(path, map.disparity_px.view(), &execution);
     return;
   }
   write_displacements(path, {map.disparity_px.view(), map.disparity_y_px.view()}, side);
@@ -64,32 +65,34 @@ DepthFiles depth_files(const MatchJob& job, const std::optional<MapCamera>& came
 }
 
 void write_results(const MatchJob& job, const DisparityMaps& maps,
-                   const Image<float>& depth_resolution, const DepthFiles& depth_files) {
+                   const Image<float>& depth_resolution, const DepthFiles& depth_files,
+                   Execution& execution) {
   const Side side = job.is_left() ? Side::kLeft : Side::kRight;
   const MatchedMap& map = maps.of(side);
-  write_map(job, job.output, maps, side);
+  write_map(job, job.output, maps, side, execution);
   if (!job.output_right.empty()) {
-    write_map(job, job.output_right, maps, Side::kRight);
+    write_map(job, job.output_right, maps, Side::kRight, execution);
   }
   if (!job.confidence.empty()) {
     write_disparity(job.confidence, map.confidence.view());
   }
   if (!job.depth.resolution_file.empty()) {
-    write_disparity(job.depth.resolution_file, depth_resolution.view());
+    write_disparity(job.depth.resolution_file, depth_resolution.view(), &execution);
   }
   write_depth_files(job.depth.outputs, depth_files);
   if (!job.unmatched.empty()) {
-    write_mask(job.unmatched, map.unmatched.view());
+    write_mask(job.unmatched, map.unmatched.view(), &execution);
   }
   if (!job.unmatched_right.empty()) {
-    write_mask(job.unmatched_right, maps.right.unmatched.view());
+    write_mask(job.unmatched_right, maps.right.unmatched.view(), &execution);
   }
   if (!job.preview.empty()) {
     const PreviewRange range = preview_range_of(job.match.disparities);
     // Along the baseline.
     const bool is_y = job.vertical && job.match.disparities_y;
     const DisparityMap& shown = is_y ? map.disparity_y_px : map.disparity_px;
-    write_photograph(job.preview, {colour_preview(shown.view(), range.min_px, range.max_px)});
+    write_photograph(job.preview, {colour_preview(shown.view(), range.min_px, range.max_px)},
+                     &execution);
   }
 }
 

@@ -32,7 +32,8 @@ DepthFiles depth_files(const MatchJob& job, const std::optional<MapCamera>& came
 
 // Write the outputs that are wanted. Throw Error.
 void write_results(const MatchJob& job, const DisparityMaps& maps,
-                   const Image<float>& depth_resolution, const DepthFiles& depth_files);
+                   const Image<float>& depth_resolution, const DepthFiles& depth_files,
+                   Execution& execution);
 void write_space(const MatchJob& job, SpaceOutputs& space, RunReport& report);
 void write_cyclopean(const MatchJob& job, const CyclopeanMap& map);
 

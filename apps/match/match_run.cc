@@ -274,7 +274,7 @@ DepthFiles write_outputs(const MatchJob& job, const MatchInputs& inputs, const M
   DepthFiles depths =
       depth_files(job, inputs.camera, reference, map, along_baseline_px, execution, report);
   report.timed_file_access("write", [&] {
-    write_results(job, matched.maps, depth_resolution, depths);
+    write_results(job, matched.maps, depth_resolution, depths, execution);
     write_space(job, space, report);
     write_cyclopean(job, matched.cyclopean);
   });

@@ -121,12 +121,13 @@ void encode_with_opencv(const std::string& extension, const Photograph& photogra
 }
 
 /// Leaves `bytes` empty when the image does not fit the format; floats never do.
-void encode_as_png(const Photograph& photograph, std::vector<std::uint8_t>& bytes) {
+void encode_as_png(const Photograph& photograph, std::vector<std::uint8_t>& bytes,
+                   Execution* execution) {
   bytes.clear();
   std::visit(
       [&]<typename T>(const Image<T>& image) {
         if constexpr (!std::is_same_v<T, float>) {
-          encode_png(image, bytes);
+          encode_png(image, bytes, execution);
         }
       },
       photograph.pixels);
@@ -269,7 +270,7 @@ DecodedImage decode_image(const FileBytes& file, const PhotographReading& readin
 }
 
 void encode_photograph(const std::filesystem::path& path, const Photograph& photograph,
-                       std::vector<std::uint8_t>& bytes) {
+                       std::vector<std::uint8_t>& bytes, Execution* execution) {
   if (photograph.width() < 1 || photograph.height() < 1) {
     throw Error(fmt::format("cannot write {}: the image has no pixels", path.string()));
   }
@@ -285,7 +286,7 @@ void encode_photograph(const std::filesystem::path& path, const Photograph& phot
   }
   try {
     if (extension == ".png") {
-      encode_as_png(photograph, bytes);
+      encode_as_png(photograph, bytes, execution);
     } else {
       encode_with_opencv(extension, photograph, bytes);
     }
@@ -329,17 +330,19 @@ Photograph read_photograph(const std::filesystem::path& path, const PhotographRe
   return std::move(stored.photograph);
 }
 
-void write_photograph(const std::filesystem::path& path, const Photograph& photograph) {
+void write_photograph(const std::filesystem::path& path, const Photograph& photograph,
+                      Execution* execution) {
   std::vector<std::uint8_t> bytes;
-  encode_photograph(path, photograph, bytes);
+  encode_photograph(path, photograph, bytes, execution);
   write_binary_file(path, bytes);
 }
 
-void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask) {
+void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask,
+                Execution* execution) {
   if (lower_case_extension(path) != ".png") {
     throw UsageError(fmt::format("cannot write {}: a mask is a .png file", path.string()));
   }
-  write_photograph(path, Photograph{Image<std::uint8_t>::copy_of(mask)});
+  write_photograph(path, Photograph{Image<std::uint8_t>::copy_of(mask)}, execution);
 }
 
 }  // namespace vantage

@@ -10,6 +10,8 @@
 
 namespace vantage {
 
+class Execution;
+
 /// The stored values of an image file: PNM is not stretched to its maximum value, floats may have
 /// any value, including NaN.
 struct DecodedImage {
@@ -28,9 +30,9 @@ DecodedImage decode_image(const FileBytes& file, const PhotographReading& readin
 
 /// Encodes an image file to `bytes`, whose memory is reused, in the format given by the extension
 /// of `path`. Floats of any value. Throws UsageError for an unknown extension, Error when the
-/// format cannot hold the depth or channels; both name `path`.
+/// format cannot hold the depth or channels; both name `path`. `execution`: encode_png().
 void encode_photograph(const std::filesystem::path& path, const Photograph& photograph,
-                       std::vector<std::uint8_t>& bytes);
+                       std::vector<std::uint8_t>& bytes, Execution* execution = nullptr);
 
 /// Reads PNG, JPEG, TIFF, PNM, BMP, WebP, EXR (by OpenCV) and PFM: 8-bit, 16-bit and float; grey,
 /// RGB or RGBA. The file's content determines the format, not its name. FILE#N is page N of a file
@@ -46,10 +48,12 @@ Photograph read_photograph(const std::filesystem::path& path, const PhotographRe
 
 /// Writes by extension (.png .jpg .tiff .bmp .ppm .pgm .webp .exr .pfm), atomically. Throws Error
 /// when the folder cannot be written or the format cannot hold the depth or channels, UsageError
-/// for an unknown extension. Thread rule: may be called concurrently.
-void write_photograph(const std::filesystem::path& path, const Photograph& photograph);
+/// for an unknown extension. `execution`: encode_png(). Thread rule: may be called concurrently.
+void write_photograph(const std::filesystem::path& path, const Photograph& photograph,
+                      Execution* execution = nullptr);
 
 /// Writes a mask as 8-bit grey PNG, atomically. Throws as write_photograph() does.
-void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask);
+void write_mask(const std::filesystem::path& path, ImageView<const std::uint8_t> mask,
+                Execution* execution = nullptr);
 
 }  // namespace vantage

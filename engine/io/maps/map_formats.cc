@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include "engine/image/finite_values.h"
 #include "engine/io/images/netpbm.h"
 #include "engine/io/images/photograph_io.h"
+#include "engine/io/images/png_encoder.h"
 #include "engine/io/maps/npy.h"
 #include "kernels/integer_disparity/integer_disparity.h"
 
@@ -29,54 +31,82 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-void disparity_as_pfm(const fs::path& /*path*/, Disparity disparity, Bytes& bytes) {
+void disparity_as_pfm(const fs::path& /*path*/, Disparity disparity, Bytes& bytes,
+                      Execution* /*execution*/) {
   encode_pfm(disparity, bytes, std::numeric_limits<float>::infinity());
 }
 
-void disparity_as_npy(const fs::path& /*path*/, Disparity disparity, Bytes& bytes) {
+void disparity_as_npy(const fs::path& /*path*/, Disparity disparity, Bytes& bytes,
+                      Execution* /*execution*/) {
   bytes = encode_npy(with_nan(disparity).view());
 }
 
-void disparity_as_floats(const fs::path& path, Disparity disparity, Bytes& bytes) {
+void disparity_as_floats(const fs::path& path, Disparity disparity, Bytes& bytes,
+                         Execution* /*execution*/) {
   encode_photograph(path, Photograph{with_nan(disparity)}, bytes);
 }
 
-void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes) {
-  static_assert(kernels::kIntegerUnitsPerPx == kIntegerDisparityScale);
-  Image<std::uint16_t> image(disparity.width(), disparity.height());
-  for (int y = 0; y < disparity.height(); ++y) {
-    const int x = kernels::integer_disparity_row(disparity.row(y), disparity.width(), image.row(y));
-    if (x < disparity.width()) {
-      throw Error(fmt::format(
-          "cannot write {}: disparity {} at pixel ({}, {}) does not fit a 16-bit PNG, expected "
-          "0..255.99, or a file in {}, which have no limits",
-          path.string(), disparity.at(x, y), x, y, listed_map_formats(MapContent::kConfidence)));
+/// A map as 16-bit PNG, made row by row: convert(values, count, stored) returns the first column
+/// whose value does not fit. For that of the first row, calls refuse(x, y).
+template <typename Convert, typename Refuse>
+void map_as_png(const fs::path& path, ImageView<const float> map, const Convert& convert,
+                const Refuse& refuse, Bytes& bytes, Execution* execution) {
+  std::atomic<bool> fits = true;
+  const auto row = [&](int y, std::uint16_t* memory) {
+    if (convert(map.row(y), map.width(), memory) < map.width()) {
+      fits = false;
+    }
+    return memory;
+  };
+  encode_png(map.width(), map.height(), row, bytes, execution);
+  std::vector<std::uint16_t> memory(static_cast<std::size_t>(map.width()));
+  for (int y = 0; !fits && y < map.height(); ++y) {
+    const int x = convert(map.row(y), map.width(), memory.data());
+    if (x < map.width()) {
+      refuse(x, y);
     }
   }
-  encode_photograph(path, Photograph{std::move(image)}, bytes);
+  if (bytes.empty()) {
+    throw Error(fmt::format("cannot write {}: an image of {}x{} pixels does not fit a .png file",
+                            path.string(), map.width(), map.height()));
+  }
 }
 
-void depth_as_png(const fs::path& path, ImageView<const float> depth_m, Bytes& bytes) {
-  Image<std::uint16_t> image(depth_m.width(), depth_m.height());
-  for (int y = 0; y < depth_m.height(); ++y) {
-    for (int x = 0; x < depth_m.width(); ++x) {
-      const double depth = static_cast<double>(depth_m.at(x, y));
-      if (!std::isfinite(depth)) {
-        image.at(x, y) = 0;
-        continue;
-      }
-      const double millimetres = std::max(std::round(depth * kIntegerDepthScale), 1.0);
-      if (millimetres > 65535) {
-        throw Error(fmt::format(
-            "cannot write {}: depth {} m at pixel ({}, {}) does not fit a 16-bit PNG of "
-            "millimetres, expected at most {}, or a file in {}",
-            path.string(), depth, x, y, kMaxIntegerDepth_m,
-            listed_map_formats(MapContent::kConfidence)));
-      }
-      image.at(x, y) = static_cast<std::uint16_t>(millimetres);
+void disparity_as_png(const fs::path& path, Disparity disparity, Bytes& bytes,
+                      Execution* execution) {
+  static_assert(kernels::kIntegerUnitsPerPx == kIntegerDisparityScale);
+  const auto refuse = [&](int x, int y) {
+    throw Error(fmt::format(
+        "cannot write {}: disparity {} at pixel ({}, {}) does not fit a 16-bit PNG, expected "
+        "0..255.99, or a file in {}, which have no limits",
+        path.string(), disparity.at(x, y), x, y, listed_map_formats(MapContent::kConfidence)));
+  };
+  map_as_png(path, disparity, kernels::integer_disparity_row, refuse, bytes, execution);
+}
+
+/// As kernels::integer_disparity_row().
+int millimetre_row(const float* depth_m, int width, std::uint16_t* stored) {
+  for (int x = 0; x < width; ++x) {
+    const double depth = static_cast<double>(depth_m[x]);
+    const double millimetres = std::max(std::round(depth * kIntegerDepthScale), 1.0);
+    if (std::isfinite(depth) && millimetres > 65535) {
+      return x;
     }
+    stored[x] = static_cast<std::uint16_t>(std::isfinite(depth) ? millimetres : 0);
   }
-  encode_photograph(path, Photograph{std::move(image)}, bytes);
+  return width;
+}
+
+void depth_as_png(const fs::path& path, ImageView<const float> depth_m, Bytes& bytes,
+                  Execution* execution) {
+  const auto refuse = [&](int x, int y) {
+    throw Error(
+        fmt::format("cannot write {}: depth {} m at pixel ({}, {}) does not fit a 16-bit PNG of "
+                    "millimetres, expected at most {}, or a file in {}",
+                    path.string(), depth_m.at(x, y), x, y, kMaxIntegerDepth_m,
+                    listed_map_formats(MapContent::kConfidence)));
+  };
+  map_as_png(path, depth_m, millimetre_row, refuse, bytes, execution);
 }
 
 /// (u, v) interleaved; both `unknown` where one of them is not finite.

@@ -15,6 +15,8 @@
 
 namespace vantage {
 
+class Execution;
+
 /// Content of a map file.
 enum class MapContent {
   kDisparity,      ///< one component
@@ -25,6 +27,7 @@ enum class MapContent {
 
 /// A file format of maps. To add one: a line in the table of map_formats.cc. Encoders write the
 /// content of a file named `path` to `bytes`, whose memory is reused; sizes are checked before.
+/// `execution`, which may be null, is for encode_png().
 /// They throw Error naming `path` when the format cannot hold a value. Thread rule: may be called
 /// concurrently.
 struct MapFormat {
@@ -35,10 +38,10 @@ struct MapFormat {
   bool holds_any_value = true;
   /// Null: does not support maps of one component.
   void (*encode_disparity)(const std::filesystem::path& path, ImageView<const float> disparity,
-                           std::vector<std::uint8_t>& bytes) = nullptr;
+                           std::vector<std::uint8_t>& bytes, Execution* execution) = nullptr;
   /// Null: does not support depths in metres, NaN = unknown.
   void (*encode_depth)(const std::filesystem::path& path, ImageView<const float> depth_m,
-                       std::vector<std::uint8_t>& bytes) = nullptr;
+                       std::vector<std::uint8_t>& bytes, Execution* execution) = nullptr;
   /// Null: does not support maps of two components.
   void (*encode_displacements)(const std::filesystem::path& path,
                                const DisplacementView& displacements, Side side,

@@ -107,14 +107,15 @@ Image<float> read_float_image(const std::filesystem::path& path) {
 }
 
 void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
-                      std::vector<std::uint8_t>& bytes) {
+                      std::vector<std::uint8_t>& bytes, Execution* execution) {
   format_of(path, disparity, MapContent::kDisparity, "disparity")
-      .encode_disparity(path, disparity, bytes);
+      .encode_disparity(path, disparity, bytes, execution);
 }
 
-void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity) {
+void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
+                     Execution* execution) {
   std::vector<std::uint8_t> bytes;
-  encode_disparity(path, disparity, bytes);
+  encode_disparity(path, disparity, bytes, execution);
   write_binary_file(path, bytes);
 }
 
@@ -131,8 +132,9 @@ void require_holds_search(const std::filesystem::path& path, int min_px, int max
 }
 
 void encode_depth(const std::filesystem::path& path, ImageView<const float> depth_m,
-                  std::vector<std::uint8_t>& bytes) {
-  format_of(path, depth_m, MapContent::kDepth, "depth").encode_depth(path, depth_m, bytes);
+                  std::vector<std::uint8_t>& bytes, Execution* execution) {
+  format_of(path, depth_m, MapContent::kDepth, "depth")
+      .encode_depth(path, depth_m, bytes, execution);
 }
 
 void write_depth(const std::filesystem::path& path, ImageView<const float> depth_m) {

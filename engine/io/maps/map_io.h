@@ -11,6 +11,8 @@
 
 namespace vantage {
 
+class Execution;
+
 /// Reads a disparity map; its content determines the format: .pfm (±inf = unknown), 16-bit .png
 /// (÷256, 0 = unknown), .tiff/.exr (float, NaN = unknown), .npy (floats or integers), 8-bit
 /// .png/.pgm (÷scale, 0 = unknown), .tiff of integers, with or without a sign. `scale` (> 0)
@@ -35,13 +37,14 @@ Image<float> read_float_image(const std::filesystem::path& path);
 /// (16-bit, ×256, 0 = unknown; values out of range are an Error; known values that round to 0
 /// become 1/256, as in KITTI's own files), .tiff/.exr (float, NaN), .npy (float32). NaN and ±inf in
 /// memory are unknown. Writes atomically. Throws UsageError for another extension, Error when the
-/// file cannot be written.
-void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity);
+/// file cannot be written. `execution`: encode_png().
+void write_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
+                     Execution* execution = nullptr);
 
 /// Encodes the map to `bytes`, whose memory is reused: the content that write_disparity() writes to
 /// `path`. Errors as write_disparity().
 void encode_disparity(const std::filesystem::path& path, ImageView<const float> disparity,
-                      std::vector<std::uint8_t>& bytes);
+                      std::vector<std::uint8_t>& bytes, Execution* execution = nullptr);
 
 /// Throws UsageError unless a file named `path` can hold every disparity of a search from min_px
 /// to max_px: a 16-bit PNG holds 0 to 255.99. Call it before the search, whose result would
@@ -51,7 +54,7 @@ void require_holds_search(const std::filesystem::path& path, int min_px, int max
 /// Encodes depths in metres (NaN = unknown) to `bytes`, whose memory is reused: the content that
 /// write_depth() writes to `path`. Errors as write_depth().
 void encode_depth(const std::filesystem::path& path, ImageView<const float> depth_m,
-                  std::vector<std::uint8_t>& bytes);
+                  std::vector<std::uint8_t>& bytes, Execution* execution = nullptr);
 
 /// Writes by extension (map_formats.h): 16-bit .png in millimetres (0 = unknown; depths below half
 /// a millimetre are stored as 1), or .pfm (+inf = unknown), .tiff, .exr, .npy (NaN) in metres.

@@ -69,7 +69,7 @@ void encode(const FrameTools& tools, FrameSlot& slot, const OutputStream& stream
             const std::filesystem::path& path) {
   const MatchedMap& map = slot.maps.of(tools.options.match.reference);
   const auto encode_map = [&](const Image<float>& values) {
-    encode_disparity(path, values.view(), slot.encoded);
+    encode_disparity(path, values.view(), slot.encoded, &tools.execution);
   };
   switch (stream.output) {
     case SequenceOutput::kDisparity:
@@ -95,7 +95,7 @@ void encode(const FrameTools& tools, FrameSlot& slot, const OutputStream& stream
       depth_map(map.disparity_px.view(), tools.cameras.map_camera_of(slot)->scale,
                 tools.options.cloud.max_depth.value_or(largest_depth_m(path)), tools.execution,
                 depth_m);
-      encode_depth(path, depth_m.view(), slot.encoded);
+      encode_depth(path, depth_m.view(), slot.encoded, &tools.execution);
       break;
     }
     case SequenceOutput::kDepthResolution: {
@@ -111,11 +111,11 @@ void encode(const FrameTools& tools, FrameSlot& slot, const OutputStream& stream
       break;
     default:
       if (const Photograph* picture = stored_picture(slot, stream)) {
-        encode_photograph(path, *picture, slot.encoded);
+        encode_photograph(path, *picture, slot.encoded, &tools.execution);
       } else {
         encode_photograph(path,
                           Photograph{mask_of(slot, stream, tools.options.match.reference).copy()},
-                          slot.encoded);
+                          slot.encoded, &tools.execution);
       }
   }
 }
