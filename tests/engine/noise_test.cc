@@ -1,4 +1,5 @@
 #include "engine/matching/noise/noise_estimate.h"
+#include "engine/matching/noise/noise_filter.h"
 
 #include "engine/matching/stereo_matcher.h"
 #include "tests/engine/engine_test.h"
@@ -139,6 +140,66 @@ TEST(MatchingNoise, DoesNotDependOnTheExecution) {
   const Photograph right = noisy(kShiftPx, 9, 2);
   expect_equal_for_every_execution(
       [&](Execution& with) { return match(left, right, {}, with).disparities; });
+  expect_equal_for_every_execution([&](Execution& with) {
+    return match(coded(0, 0, 0), coded(kShiftPx, 0, 0), {}, with).disparities;
+  });
+}
+
+/// The mean of the definition, over pixels up to that many columns and rows away.
+std::vector<double> plainly_smoothed(const std::vector<double>& grey, const NoiseFilter& filter,
+                                     int columns, int rows) {
+  std::vector<double> result;
+  const auto at = [&](int x, int y) {
+    return grey[static_cast<std::size_t>(std::clamp(y, 0, kHeight - 1) * kWidth +
+                                         std::clamp(x, 0, kWidth - 1))];
+  };
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    double sum = 0;
+    double weights = 0;
+    for (int v = -rows; v <= rows; ++v) {
+      for (int u = -columns; u <= columns; ++u) {
+        const double share = (at(x + u, y + v) - at(x, y)) / filter.cut_off_grey_levels;
+        const double weight = std::exp(-(u * u + v * v) / (2 * std::pow(filter.sigma_px, 2))) *
+                              std::pow(std::max(0.0, 1 - share * share), 2);
+        sum += weight * at(x + u, y + v);
+        weights += weight;
+      }
+    }
+    result.push_back(sum / weights);
+  }
+  return result;
+}
+
+TEST(NoiseFilter, IsTheBilateralMeanOfItsDefinition) {
+  for (const NoiseKind kind : {NoiseKind::kCodec, NoiseKind::kSensor}) {
+    const NoiseFilter filter = filter_of({.kind = kind, .grey_levels = 5});
+    Image<std::uint8_t> colours(kWidth, kHeight, 3);
+    std::array<std::vector<double>, 3> expected;
+    for (int c = 0; c < 3; ++c) {
+      const Photograph channel = noisy(7 * c, 5, static_cast<unsigned>(c));
+      for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+        const std::uint8_t grey = std::get<0>(channel.pixels).at(x, y);
+        colours.at(x, y, c) = grey;
+        expected[static_cast<std::size_t>(c)].push_back(grey);
+      }
+    }
+    for (std::vector<double>& grey : expected) {
+      grey = kind == NoiseKind::kCodec
+                 ? plainly_smoothed(plainly_smoothed(grey, filter, 3, 0), filter, 0, 3)
+                 : plainly_smoothed(grey, filter, 3, 3);
+    }
+    SmoothedPhotograph memory;
+    const Photograph& smoothed = memory.make({std::move(colours)}, 3, filter, execution());
+    const auto& pixels = std::get<Image<std::uint16_t>>(smoothed.pixels);
+    for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_NEAR(pixels.at(x, y, c) / 257.0,
+                    expected[static_cast<std::size_t>(c)][static_cast<std::size_t>(y * kWidth + x)],
+                    0.4)
+            << x << " " << y << " " << c;
+      }
+    }
+  }
 }
 
 TEST(MatchingNoise, MethodsOfTheBookSeeImagesAsTheyAre) {

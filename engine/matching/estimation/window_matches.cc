@@ -10,6 +10,8 @@
 #include <numeric>
 #include <utility>
 
+#include "kernels/window_correlation/window_correlation.h"
+
 namespace vantage {
 namespace {
 
@@ -17,6 +19,7 @@ namespace {
 constexpr int kRadius = 1;      ///< of the windows compared, columns
 constexpr int kMeanRadius = 3;  ///< of the local means, columns
 constexpr int kRowRadius = 3;   ///< of both
+static_assert(kRadius == 1 && 2 * kRowRadius + 1 == kernels::kCorrelationRows);
 /// Columns at the sides whose means lack pixels: they resemble only what is at the same place.
 constexpr int kBorder = kRadius + kMeanRadius;
 /// Variance, in grey levels², that is added to that of each image: of rounding to whole levels.
@@ -103,23 +106,18 @@ void correlate(const Detail& reference, const Details& others, int y, int half_d
   if (y - dy < 0 || y - dy >= height || begin >= end) {
     return;
   }
-  std::fill(columns.begin(), columns.end(), 0.0F);
-  float* const sums = columns.data();
+  kernels::CorrelationRow rows{.scale = reference.scale.row(y),
+                               .partner_scale = other.scale.row(y - dy) - d,
+                               .begin = begin,
+                               .end = end,
+                               .sums = columns.data()};
   const int last_row = std::min({height - 1, height - 1 + dy, y + kRowRadius});
   for (int from = std::max({0, dy, y - kRowRadius}); from <= last_row; ++from) {
-    const float* const values = reference.values.row(from);
-    const float* const partners = other.values.row(from - dy) - d;
-    for (int x = begin - kRadius; x < end + kRadius; ++x) {
-      sums[x] += values[x] * partners[x];
-    }
+    rows.values[static_cast<std::size_t>(rows.rows)] = reference.values.row(from);
+    rows.partners[static_cast<std::size_t>(rows.rows)] = other.values.row(from - dy) - d;
+    ++rows.rows;
   }
-  const float* const scale = reference.scale.row(y);
-  const float* const other_scale = other.scale.row(y - dy) - d;
-  for (int x = begin; x < end; ++x) {
-    const float r = (sums[x - 1] + sums[x] + sums[x + 1]) * scale[x] * other_scale[x];
-    row[x] = r > best[x] ? static_cast<float>(dy) : row[x];
-    best[x] = std::max(best[x], r);
-  }
+  kernels::correlation_row(rows, static_cast<float>(dy), best, row);
 }
 
 Winners search(const Detail& reference, const Details& other, DisparityRange columns,
@@ -149,15 +147,9 @@ Winners search(const Detail& reference, const Details& other, DisparityRange col
       for (int dy = rows.min; dy <= rows.max; ++dy) {
         correlate(reference, other, y, half_d, dy, now.data(), partner_row.data(), sums);
       }
-      for (int x = 0; x < width; ++x) {
-        const auto i = static_cast<std::size_t>(x);
-        const bool is_better = now[i] > best[i];
-        const bool is_apart = static_cast<float>(half_d) - offset[x] > kPeakRadius;
-        second[i] = is_better ? before[i] : is_apart ? std::max(second[i], now[i]) : second[i];
-        best[i] = is_better ? now[i] : best[i];
-        offset[x] = is_better ? static_cast<float>(half_d) : offset[x];
-        row[x] = is_better ? partner_row[i] : row[x];
-      }
+      kernels::add_partners_row(now.data(), partner_row.data(), before.data(),
+                                static_cast<float>(half_d), kPeakRadius, width,
+                                {best.data(), second.data(), offset, row});
     }
     std::transform(best.begin(), best.end(), second.begin(), winners.ambiguity.row(y),
                    [](float r1, float r2) {
