@@ -37,18 +37,16 @@ SynthesisOptions options_at(double distance, SynthesisOptions options) {
 
 template <typename T>
 struct RowPairWarper<T>::SourceRows {
-  float* pixels;        // of x = 0; margins on both sides
-  float* disparity_px;  // also with margins
+  float* planes;          // of x = 0; margins on both sides
+  std::ptrdiff_t stride;  // floats between planes
+  float* disparity_px;    // also with margins
   float* column;
 };
 
 template <typename T>
 RowPairWarper<T>::RowPairWarper(const StereoSource<T>& source, const SynthesisOptions& options,
                                 double view_x)
-    : source_(source),
-      options_(options),
-      view_x_(view_x),
-      lanes_(kernels::pixel_lanes(source.left.channels())) {}
+    : source_(source), options_(options), view_x_(view_x) {}
 
 template <typename T>
 double RowPairWarper<T>::alpha() const {
@@ -61,7 +59,8 @@ std::size_t RowPairWarper<T>::scratch_floats() const {
     return position_floats(width()) + row_floats(width(), 1);
   }
   const int padded = width() + 2 * kernels::kRowMarginPx;
-  return row_floats(padded, lanes_) + row_floats(padded, 1) + row_floats(width(), 1);
+  return row_floats(padded, 1) * static_cast<std::size_t>(source_.left.channels() + 1) +
+         row_floats(width(), 1);
 }
 
 template <typename T>
@@ -70,7 +69,8 @@ void RowPairWarper<T>::warp_one(const T* pixels, const float* disparity_px, doub
                                 float* warped_disparity_px) const {
   const auto limit = static_cast<float>(options_.disparity_gradient_limit_px);
   const bool forward = options_.warp == WarpColour::kForward;
-  kernels::load_pixel_row(pixels, width(), source_.left.channels(), rows.pixels);
+  const int channels = source_.left.channels();
+  kernels::load_pixel_planes(pixels, width(), channels, rows.stride, rows.planes);
   std::copy_n(disparity_px, width(), rows.disparity_px);
   kernels::forward_warp_row({.disparity_px = rows.disparity_px,
                              .width = width(),
@@ -78,15 +78,19 @@ void RowPairWarper<T>::warp_one(const T* pixels, const float* disparity_px, doub
                              .gradient_limit_px = limit},
                             warped_disparity_px, forward ? rows.column : nullptr);
   if (forward) {
-    kernels::fetch_forward_row(
-        {.pixels = rows.pixels, .source_column = rows.column, .width = width(), .lanes = lanes_},
-        colours);
+    kernels::fetch_forward_row({.pixels = rows.planes,
+                                .stride = rows.stride,
+                                .source_column = rows.column,
+                                .width = width(),
+                                .channels = channels},
+                               colours);
   } else {
-    kernels::fetch_bicubic_row({.pixels = rows.pixels,
+    kernels::fetch_bicubic_row({.pixels = rows.planes,
+                                .stride = rows.stride,
                                 .source_disparity_px = rows.disparity_px,
                                 .warped_disparity_px = warped_disparity_px,
                                 .width = width(),
-                                .lanes = lanes_,
+                                .channels = channels,
                                 .camera_offset = camera_offset,
                                 .gradient_limit_px = limit,
                                 .largest_value = kernels::kLargestValue<T>,
@@ -139,12 +143,14 @@ void RowPairWarper<T>::warp_rectified(int y, std::span<float> scratch, float* me
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   float* next = scratch.data();
   SourceRows rows{};
-  rows.pixels = next + kMargin * lanes_;
-  next += row_floats(width() + 2 * kMargin, lanes_);
+  const std::size_t row = row_floats(width() + 2 * kMargin, 1);
+  rows.planes = next + kMargin;
+  rows.stride = static_cast<std::ptrdiff_t>(row);
+  next += row * static_cast<std::size_t>(source_.left.channels());
   rows.disparity_px = next + kMargin;
   std::fill_n(rows.disparity_px - kMargin, kMargin, kUnknown);
   std::fill_n(rows.disparity_px + width(), kMargin, kUnknown);
-  next += row_floats(width() + 2 * kMargin, 1);
+  next += row;
   rows.column = next;
 
   const WarpedPairLayout at(width(), source_.left.channels());

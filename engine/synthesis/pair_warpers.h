@@ -61,7 +61,6 @@ class RowPairWarper {
   const StereoSource<T>& source_;
   const SynthesisOptions& options_;
   double view_x_;
-  int lanes_;
 };
 
 /// Warps both images of a pair to any new view, each by an ImageWarper. At the position of its own

@@ -20,10 +20,9 @@
 
 namespace vantage {
 
-/// Warped rows are kept between the two passes over an image as long as they largely fit in the
-/// caches: more would take several times the memory of all inputs, and as much time as warping
-/// again.
-inline constexpr std::size_t kMaxKeptRowBytes = std::size_t{32} << 20;
+/// The intensities are regressed on rows of the view at equal distances: at least this many, or all
+/// if it has fewer. Neighbouring rows say the same.
+inline constexpr int kFitRows = 64;
 
 // Results of the parallel passes per row; reduced in row order.
 struct ViewRowRecord {
@@ -56,7 +55,6 @@ class ViewAssembly {
     if (given_fit != nullptr) {
       view.intensity = *given_fit;
     } else if (options_.match_intensities) {
-      keep_warped_rows();
       view.intensity = fit_channels(intensity_sums(), channels_, double{kGreyLevelsPerUnit<T>});
     }
     image.resize(width_, height_, channels_);
@@ -74,9 +72,10 @@ class ViewAssembly {
   }
 
   kernels::IntensitySums intensity_sums() {
-    for_each_warped_row([&](int y, const kernels::WarpedPairRow& pair) {
-      records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(pair);
-    });
+    for_each_warped_row(
+        std::max(1, height_ / kFitRows), [&](int y, const kernels::WarpedPairRow& pair) {
+          records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(pair);
+        });
     kernels::IntensitySums total;
     for (const ViewRowRecord& record : records_) {
       total.add(record.sums);
@@ -85,51 +84,21 @@ class ViewAssembly {
   }
 
  private:
-  [[nodiscard]] std::size_t kept_bytes() const {
-    const std::size_t bytes = layout_.floats * sizeof(float) * static_cast<std::size_t>(height_);
-    return bytes <= kMaxKeptRowBytes ? bytes : 0;
-  }
-
-  // Avoids warping them a second time.
-  void keep_warped_rows() {
-    const std::size_t bytes = kept_bytes();
-    if (bytes > 0) {
-      kept_memory_ = execution_.scratch().lease(bytes);
-      kept_ = reinterpret_cast<float*>(kept_memory_.data());
-    }
-  }
-
-  [[nodiscard]] float* kept_row(int y) const {
-    return kept_ + layout_.floats * static_cast<std::size_t>(y);
-  }
-  [[nodiscard]] kernels::WarpedPairRow warped_in(const float* memory) const {
-    return layout_.row_in(memory, options_.disparity_gradient_limit_px);
-  }
-
-  // Calls body(y, warped scanline pair) for all rows.
+  // Calls body(y, warped scanline pair) for every `step`th row, from step / 2 on.
   template <typename Body>
-  void for_each_warped_row(const Body& body) {
+  void for_each_warped_row(int step, const Body& body) {
     const std::size_t scratch_floats = warper_.scratch_floats();
-    execution_.for_each_band(height_, [&](int first_row, int end_row) {
+    const int first_y = step / 2;
+    execution_.for_each_band((height_ - first_y + step - 1) / step, [&](int first, int end) {
       const auto memory =
           execution_.scratch().lease((scratch_floats + layout_.floats) * sizeof(float));
       auto* scratch = reinterpret_cast<float*>(memory.data());
-      for (int y = first_row; y < end_row; ++y) {
-        float* pair = kept_ != nullptr ? kept_row(y) : scratch + scratch_floats;
+      float* const pair = scratch + scratch_floats;
+      for (int y = first_y + step * first; y < first_y + step * end; y += step) {
         warper_.warp(y, {scratch, scratch_floats}, pair);
-        body(y, warped_in(pair));
+        body(y, layout_.row_in(pair, options_.disparity_gradient_limit_px));
       }
     });
-  }
-
-  // As for_each_warped_row() in a second pass; reads the rows if they were kept.
-  template <typename Body>
-  void for_each_warped_row_again(const Body& body) {
-    if (kept_ == nullptr) {
-      for_each_warped_row(body);
-      return;
-    }
-    execution_.for_each_row(height_, [&](int y) { body(y, warped_in(kept_row(y))); });
   }
 
   void combine(Image<T>& image, SynthesizedView& view) {
@@ -139,7 +108,7 @@ class ViewAssembly {
     weights.trust_at_ends = ViewFinisher<T>::trust_at_ends(options_, alpha);
     ViewFinisher<T> finisher(options_, alpha, outline_places(), image.view(), view.sources.view(),
                              execution_);
-    for_each_warped_row_again([&](int y, const kernels::WarpedPairRow& pair) {
+    for_each_warped_row(1, [&](int y, const kernels::WarpedPairRow& pair) {
       const auto memory =
           execution_.scratch().lease(static_cast<std::size_t>(width_) * sizeof(float));
       auto* disparity_px = reinterpret_cast<float*>(memory.data());
@@ -196,8 +165,6 @@ class ViewAssembly {
   WarpedPairLayout layout_;
   scheduler::ScratchPool::Lease records_memory_;
   std::span<ViewRowRecord> records_;
-  scheduler::ScratchPool::Lease kept_memory_;
-  float* kept_ = nullptr;  // warped scanline pairs of all rows, if kept
 };
 
 /// Sums in grey levels.

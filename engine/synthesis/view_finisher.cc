@@ -108,8 +108,9 @@ void ViewFinisher<T>::fill_row(const BlendedScanline& row, const RowMemory& memo
                               .filled = memory.filled},
       options_.holes == HoleFilling::kMirror || options_.holes == HoleFilling::kTexture);
   std::uint8_t* sources = sources_.row(row.y);
+  const std::uint8_t* filled = memory.filled;  // no member: stores of bytes cannot alias it
   for (int x = 0; x < width; ++x) {
-    sources[x] = static_cast<std::uint8_t>(sources[x] & ~memory.filled[x]);
+    sources[x] = static_cast<std::uint8_t>(sources[x] & ~filled[x]);
   }
 }
 

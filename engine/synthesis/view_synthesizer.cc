@@ -202,13 +202,6 @@ ViewSynthesizer::ViewSynthesizer(const SynthesisOptions& options, Execution& exe
   options_.validate();
 }
 
-std::size_t ViewSynthesizer::working_bytes(int width, int height, int channels) {
-  // Independent of the pixel type: rows are floats.
-  const std::size_t bytes =
-      WarpedPairLayout(width, channels).floats * sizeof(float) * static_cast<std::size_t>(height);
-  return bytes <= kMaxKeptRowBytes ? bytes : 0;
-}
-
 std::size_t ViewSynthesizer::working_bytes(const NewView& view, int width, int height,
                                            int channels) {
   const int samples = max_samples_per_side(view, width, height);
@@ -218,7 +211,7 @@ std::size_t ViewSynthesizer::working_bytes(const NewView& view, int width, int h
                                         : (sizeof(float) * static_cast<std::size_t>(channels) + 2) *
                                               static_cast<std::size_t>(fine.width_px) *
                                               static_cast<std::size_t>(fine.height_px);
-  return sampled_bytes + working_bytes(fine.width_px, fine.height_px, channels) +
+  return sampled_bytes +
          ViewFinisher<float>::surface_outline_bytes(fine.width_px, fine.height_px, channels) +
          SurfaceWarper<float>::working_bytes(fine, width, height);
 }

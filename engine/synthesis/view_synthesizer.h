@@ -44,7 +44,7 @@ struct TripleFit {
 ///
 /// Both images are warped to the view: along scanlines if it is on the baseline with the images'
 /// orientation (RowPairWarper), else in one pass through all homographies (SurfaceWarper). Their
-/// colours are regressed on each other over the whole view (3.9–3.11), combined (3.12–3.14), and
+/// colours are regressed on each other over rows of the whole view (3.9–3.11), combined (3.12–3.14), and
 /// the holes filled along its scanlines. Images show the same surface if their disparities, or off
 /// the baseline their nearness (NewView), agree within the gradient limit. Views that reduce the
 /// images are made of several samples per pixel (view_sampling.h). At a camera's position, XS = 0
@@ -100,11 +100,9 @@ class ViewSynthesizer {
                           baseline_view(view_x, 0, source.left.width(), source.left.height()));
   }
 
-  /// Working memory of synthesize() in bytes for an image of this shape without a given fit,
-  /// besides rows per thread.
-  [[nodiscard]] static std::size_t working_bytes(int width, int height, int channels);
-  /// Upper bound of the same for any view of images of this shape, including maps of both images
-  /// and the kept rows, which a given fit does not need.
+  /// Upper bound of the working memory of synthesize() in bytes off the baseline, for images of
+  /// this shape, besides rows per thread: maps of both images, outlines, samples. On the baseline
+  /// it takes none.
   [[nodiscard]] static std::size_t working_bytes(const NewView& view, int width, int height,
                                                  int channels);
   /// Additional bytes for filling the holes.

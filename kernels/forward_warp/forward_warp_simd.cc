@@ -9,57 +9,72 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// Columns whose targets are computed at a time; a multiple of every vector length.
-constexpr int kBlock = 64;
-// Farther than any row width, and safe to convert and to add to a column.
-constexpr double kFarColumns = 1 << 29;
+// Columns whose targets are computed at a time, and then read: so many that most of them are in the
+// cache by then, since vectors that other vectors have just been stored across wait for it.
+constexpr int kBlock = 256;
+constexpr int kWord = 64;
 
 // Neighbouring columns plus one on each side: the end columns of the adjacent blocks.
 struct Block {
   int begin = 0;  // column of element 1
   int count = 0;
-  float disparity_px[kBlock + 2];   // NaN = unknown
+  float disparity_px[kBlock + 18];  // NaN = unknown; read in whole vectors
   std::int32_t target[kBlock + 2];  // −1 and width represent everything outside the view
 };
 
-// floor(x − s·d + ½) for columns [first, first + count) of a block.
-template <class D64>
-HWY_INLINE void find_targets(D64 d64, const ForwardWarpRow& row, int first, int count,
+// Columns processed at once.
+using Columns = hn::CappedTag<float, 16>;
+using Targets = hn::RebindToSigned<Columns>;
+constexpr int kLanes = static_cast<int>(hn::MaxLanes(Columns()));
+
+// floor(x − s·d + ½) for the columns of a block. Reads and writes whole vectors.
+HWY_INLINE void find_targets(const ForwardWarpRow& row, const float* HWY_RESTRICT disparity_px,
                              Block& block) {
-  const hn::Rebind<float, D64> d32;
-  const hn::Rebind<std::int32_t, D64> di32;
-  const auto largest = hn::Set(d32, std::numeric_limits<float>::max());
-  const auto unknown = hn::Set(d32, std::numeric_limits<float>::quiet_NaN());
-  const auto offset = hn::Set(d64, row.camera_offset);
-  const auto far = hn::Set(d64, kFarColumns);
-  const auto before = hn::Set(di32, -1);
-  const auto after = hn::Set(di32, row.width);
-  for (int i = first; i < first + count; i += static_cast<int>(hn::Lanes(d64))) {
-    const auto read = hn::LoadU(d32, row.disparity_px + block.begin + i);
+  const Columns d;
+  const Targets di;
+  const auto largest = hn::Set(d, std::numeric_limits<float>::max());
+  const auto unknown = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  const auto offset = hn::Set(d, static_cast<float>(row.camera_offset));
+  const auto lane = hn::Iota(di, 0);
+  for (int i = 0; i < block.count; i += kLanes) {
+    const auto read = hn::LoadU(d, disparity_px + i);
     const auto known = hn::Le(hn::Abs(read), largest);
-    const auto exact = hn::Mul(offset, hn::PromoteTo(d64, hn::IfThenElseZero(known, read)));
-    const auto floored = hn::Floor(hn::Sub(hn::Set(d64, 0.5), exact));
-    const auto shift = hn::DemoteTo(di32, hn::Min(hn::Max(floored, hn::Neg(far)), far));
-    // Not Iota(di32, x): only a constant start avoids a detour through memory.
-    const auto column = hn::Add(hn::Iota(di32, 0), hn::Set(di32, block.begin + i));
-    const auto target = hn::Min(hn::Max(hn::Add(column, shift), before), after);
-    hn::StoreU(hn::IfThenElse(known, read, unknown), d32, block.disparity_px + 1 + i);
-    hn::StoreU(hn::IfThenElse(hn::RebindMask(di32, known), target, before), di32,
+    const auto shift =
+        hn::Floor(hn::Sub(hn::Set(d, 0.5F), hn::Mul(offset, hn::IfThenElseZero(known, read))));
+    const int x = block.begin + i;
+    // Limited to the columns before and after the view, which floats hold exactly.
+    const auto column = hn::ConvertTo(d, lane);
+    const auto before = hn::Sub(hn::Set(d, static_cast<float>(-1 - x)), column);
+    const auto after = hn::Sub(hn::Set(d, static_cast<float>(row.width - x)), column);
+    const auto target = hn::Add(hn::ConvertTo(di, hn::Min(hn::Max(shift, before), after)),
+                                hn::Add(lane, hn::Set(di, x)));
+    hn::StoreU(hn::IfThenElse(known, read, unknown), d, block.disparity_px + 1 + i);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(di, known), target, hn::Set(di, -1)), di,
                block.target + 1 + i);
   }
 }
 
-// Bit i: the sampling gap between column i and the column processed before it must be filled.
+// A bit per column of 64 of a block.
+struct WordBits {
+  std::uint64_t gaps = 0;  // the sampling gap between it and the one processed before it is filled
+  std::uint64_t starts = 0;  // it does not land beside the column to its left
+};
+
+// Bits of `count` columns of a block from `first` on.
 template <int kStep>
-HWY_INLINE std::uint64_t find_gaps(float gradient_limit_px, const Block& block) {
-  const hn::CappedTag<float, 16> d;
-  const hn::RebindToSigned<decltype(d)> di;
-  constexpr int kLanes = static_cast<int>(hn::MaxLanes(d));
+HWY_INLINE WordBits find_bits(float gradient_limit_px, const Block& block, int first, int count) {
+  const Columns d;
+  const Targets di;
   const auto limit = hn::Set(d, gradient_limit_px);
   const auto one = hn::Set(di, 1);
-  std::uint64_t gaps = 0;
-  for (int i = 0; i < block.count; i += kLanes) {
-    const int here = 1 + i;
+  const auto bits_of = [d](hn::MFromD<Columns> mask) HWY_ATTR {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, mask, bits);
+    return std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8;
+  };
+  WordBits found;
+  for (int i = 0; i < count; i += kLanes) {
+    const int here = 1 + first + i;
     const int previous = here - kStep;
     const auto target = hn::LoadU(di, block.target + here);
     const auto previous_target = hn::LoadU(di, block.target + previous);
@@ -67,17 +82,14 @@ HWY_INLINE std::uint64_t find_gaps(float gradient_limit_px, const Block& block) 
         kStep > 0 ? hn::Sub(target, previous_target) : hn::Sub(previous_target, target);
     const auto rise = hn::Abs(hn::Sub(hn::LoadU(d, block.disparity_px + here),
                                       hn::LoadU(d, block.disparity_px + previous)));
-    const auto is_gap = hn::And(hn::RebindMask(d, hn::Gt(distance, one)), hn::Le(rise, limit));
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, is_gap, bits);
-    gaps |= (std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8) << i;
+    const auto beside = hn::Add(hn::LoadU(di, block.target + here - 1), one);
+    found.gaps |= bits_of(hn::And(hn::RebindMask(d, hn::Gt(distance, one)), hn::Le(rise, limit)))
+                  << i;
+    found.starts |= bits_of(hn::RebindMask(d, hn::Ne(target, beside))) << i;
   }
-  return block.count < kBlock ? gaps & ((std::uint64_t{1} << block.count) - 1) : gaps;
+  const std::uint64_t all = ~std::uint64_t{0} >> (kWord - count);
+  return {found.gaps & all, (found.starts & all) | 1};
 }
-
-// Columns that are written at once where they land side by side.
-using Run = hn::CappedTag<float, 16>;
-constexpr int kRun = static_cast<int>(hn::MaxLanes(Run()));
 
 // Output of a pass; kColumns: whether source columns are requested.
 template <bool kColumns>
@@ -114,86 +126,97 @@ HWY_NOINLINE void fill_sampling_gap(const ForwardWarpRow& row, const Block& bloc
   }
 }
 
-// Writes the columns of one vector if they land side by side, as on a smooth surface; else does
-// nothing and returns false.
+// Writes columns [first, end) of a block, which land side by side.
 template <bool kColumns>
-HWY_INLINE bool write_run(const Block& block, int first, int width, Output<kColumns> output) {
-  const Run d;
-  const hn::RebindToSigned<Run> di;
-  const std::int32_t target = block.target[1 + first];
-  const auto targets = hn::LoadU(di, block.target + 1 + first);
-  if (target < 0 || target + kRun > width ||
-      !hn::AllTrue(di, hn::Eq(targets, hn::Add(hn::Iota(di, 0), hn::Set(di, target))))) {
-    return false;
+HWY_INLINE void write_run(const Block& block, int first, int end, int width,
+                          Output<kColumns> output) {
+  const Columns d;
+  const Targets di;
+  first += block.target[1 + first] < 0 ? 1 : 0;
+  const int shift = block.target[1 + first] - first;
+  end = std::min(end, width - shift);
+  if (first >= end) {
+    return;
   }
-  hn::StoreU(hn::LoadU(d, block.disparity_px + 1 + first), d, output.disparity_px + target);
-  if (kColumns) {
-    const auto columns = hn::Add(hn::Iota(di, 0), hn::Set(di, block.begin + first));
-    hn::StoreU(hn::ConvertTo(d, columns), d, output.source_column + target);
+  const auto write = [&](int i, auto store) HWY_ATTR {
+    store(hn::LoadU(d, block.disparity_px + 1 + i), output.disparity_px + shift + i);
+    if (kColumns) {
+      const auto columns = hn::Add(hn::Iota(di, 0), hn::Set(di, block.begin + i));
+      store(hn::ConvertTo(d, columns), output.source_column + shift + i);
+    }
+  };
+  int i = first;
+  for (; i + kLanes <= end; i += kLanes) {
+    write(i, [](auto values, float* to) HWY_ATTR { hn::StoreU(values, Columns(), to); });
   }
-  return true;
+  if constexpr (kLanes == 16) {  // there, stores of a part are as fast
+    const auto rest = hn::FirstN(d, static_cast<std::size_t>(end - i));
+    write(i, [rest](auto values, float* to)
+                 HWY_ATTR { hn::BlendedStore(values, rest, Columns(), to); });
+  } else {
+    for (; i < end; ++i) {
+      output.write(shift + i, block.disparity_px[1 + i], static_cast<float>(block.begin + i));
+    }
+  }
 }
 
-// Writes columns [first, end) of a block, in direction kStep.
+// Processes `count` columns of a block from `word` on, in direction kStep.
 template <int kStep, bool kColumns>
-HWY_INLINE void write_columns(const Block& block, int first, int end, int width,
-                              Output<kColumns> output) {
-  const float* disparity_px = block.disparity_px + 1;
-  const std::int32_t* target = block.target + 1;
-  while (first < end) {
-    const int count = std::min(kRun, end - first);
-    const int run = kStep > 0 ? first : end - count;
-    if (count < kRun || !write_run(block, run, width, output)) {
-      for (int k = 0; k < count; ++k) {
-        const int i = kStep > 0 ? run + k : run + count - 1 - k;
-        if (HWY_LIKELY(static_cast<unsigned>(target[i]) < static_cast<unsigned>(width))) {
-          output.write(target[i], disparity_px[i], static_cast<float>(block.begin + i));
-        }
-      }
+HWY_INLINE void write_word(const ForwardWarpRow& row, const Block& block, int word, int count,
+                           Output<kColumns> output) {
+  const WordBits bits = find_bits<kStep>(row.gradient_limit_px, block, word, count);
+  // Columns [first, end), whose gap is before the one that is processed first.
+  const auto write = [&](int first, int end) HWY_ATTR {
+    const int begin = kStep > 0 ? first : end - 1;
+    if ((bits.gaps >> begin & 1U) != 0) {
+      fill_sampling_gap(row, block, word + begin, kStep, output);
     }
-    (kStep > 0 ? first : end) += kStep > 0 ? count : -count;
+    write_run(block, word + first, word + end, row.width, output);
+  };
+  std::uint64_t starts = bits.starts;
+  if (kStep > 0) {
+    while (starts != 0) {
+      const auto first = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(starts));
+      starts &= starts - 1;
+      write(first,
+            starts != 0 ? static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(starts)) : count);
+    }
+  } else {
+    for (int end = count; starts != 0;) {
+      const auto first = static_cast<int>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(starts));
+      starts &= ~(std::uint64_t{1} << first);
+      write(first, end);
+      end = first;
+    }
   }
 }
 
 // Processes one scanline in direction kStep.
 template <int kStep, bool kColumns>
 HWY_INLINE void walk(const ForwardWarpRow& row, Output<kColumns> output) {
-  const hn::ScalableTag<double> d64;
-  const hn::CappedTag<double, 1> d64_one;
   HWY_ALIGN Block block = {};
+  HWY_ALIGN float last_disparity_px[kBlock] = {};  // of a block that is not whole
   const int blocks = (row.width + kBlock - 1) / kBlock;
   float previous_disparity_px = std::numeric_limits<float>::quiet_NaN();
   std::int32_t previous_target = 0;
   for (int b = 0; b < blocks; ++b) {
     block.begin = (kStep > 0 ? b : blocks - 1 - b) * kBlock;
     block.count = std::min(kBlock, row.width - block.begin);
-    const int whole_vectors = block.count - block.count % static_cast<int>(hn::Lanes(d64));
-    find_targets(d64, row, 0, whole_vectors, block);
-    find_targets(d64_one, row, whole_vectors, block.count - whole_vectors, block);
+    const float* disparity_px = row.disparity_px + block.begin;
+    if (block.count < kBlock) {
+      std::copy_n(disparity_px, block.count, last_disparity_px);
+      disparity_px = last_disparity_px;
+    }
+    find_targets(row, disparity_px, block);
     const int previous = kStep > 0 ? 0 : block.count + 1;
     block.disparity_px[previous] = previous_disparity_px;
     block.target[previous] = previous_target;
 
-    std::uint64_t gaps = find_gaps<kStep>(row.gradient_limit_px, block);
-    int first = 0;
-    int end = block.count;
-    while (gaps != 0) {
-      // Everything up to the gap, then the gap, because its column comes after it.
-      if (kStep > 0) {
-        const auto gap = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(gaps));
-        write_columns<kStep>(block, first, gap, row.width, output);
-        fill_sampling_gap(row, block, gap, kStep, output);
-        first = gap;
-        gaps &= gaps - 1;
-      } else {
-        const auto gap = static_cast<int>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(gaps));
-        write_columns<kStep>(block, gap + 1, end, row.width, output);
-        fill_sampling_gap(row, block, gap, kStep, output);
-        end = gap + 1;
-        gaps &= ~(std::uint64_t{1} << gap);
-      }
+    for (int i = 0; i < block.count; i += kWord) {
+      const int word = kStep > 0 ? i : (block.count - 1) / kWord * kWord - i;
+      const int count = std::min(kWord, block.count - word);
+      write_word<kStep>(row, block, word, count, output);
     }
-    write_columns<kStep>(block, first, end, row.width, output);
     const int last = kStep > 0 ? block.count : 1;
     previous_disparity_px = block.disparity_px[last];
     previous_target = block.target[last];

@@ -1,7 +1,10 @@
 #include "kernels/hole_fill/hole_fill.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+
+#include "kernels/row_bits/row_bits.h"
 
 namespace vantage::kernels {
 namespace {
@@ -67,18 +70,27 @@ void fill_holes(const HoleFillRow<T>& row, bool mirror) {
   if (row.filled != nullptr) {
     std::fill_n(row.filled, row.width, std::uint8_t{0});
   }
-  int x = 0;
-  while (x < row.width) {
-    if (!std::isnan(row.disparity_px[x])) {
-      ++x;
-      continue;
-    }
-    const int begin = x;
-    while (x < row.width && std::isnan(row.disparity_px[x])) {
-      ++x;
-    }
-    if (begin > 0 || x < row.width) {
-      fill_hole(row, begin, x, mirror);
+  constexpr int kBlock = 1024;
+  std::uint64_t known[row_words(kBlock)];
+  int end = 0;  // of the last hole
+  for (int first = 0; first < row.width; first += kBlock) {
+    const int count = std::min(kBlock, row.width - first);
+    const float* disparity_px = row.disparity_px + first;
+    near_bits_row(disparity_px, disparity_px, 0, count, known);
+    for (int word = 0; word < row_words(count); ++word) {
+      for (std::uint64_t open = ~known[word]; open != 0; open &= open - 1) {
+        const int begin = first + 64 * word + std::countr_zero(open);
+        if (begin < end || begin >= row.width) {
+          continue;
+        }
+        end = begin;
+        while (end < row.width && std::isnan(row.disparity_px[end])) {
+          ++end;
+        }
+        if (begin > 0 || end < row.width) {
+          fill_hole(row, begin, end, mirror);
+        }
+      }
     }
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace vantage::kernels {
@@ -8,8 +9,9 @@ namespace vantage::kernels {
 /// padded so that one vector holds one pixel.
 constexpr int pixel_lanes(int channels) { return channels == 1 ? 1 : 4; }
 
-/// Margin on each side of a source row: readable pixels of any value, and NaN disparities.
-inline constexpr int kRowMarginPx = 2;
+/// Margin on each side of a source row: readable pixels of any value, and NaN disparities. Kernels
+/// read whole vectors that begin at any pixel.
+inline constexpr int kRowMarginPx = 32;
 
 /// Maximum value of a pixel type in a photograph; the minimum is 0.
 template <typename T>
@@ -19,11 +21,13 @@ inline constexpr float kLargestValue<std::uint8_t> = 255.0F;
 template <>
 inline constexpr float kLargestValue<std::uint16_t> = 65535.0F;
 
-/// Copies pixels[x · channels + c], x in [0, width), to row[x · pixel_lanes + c]; x = 0 is
-/// kRowMarginPx pixels after the start of `row`. Margins and unused lanes become 0. channels is 1,
-/// 3 or 4. Identical on every instruction set.
-void load_pixel_row(const std::uint8_t* pixels, int width, int channels, float* row);
-void load_pixel_row(const std::uint16_t* pixels, int width, int channels, float* row);
-void load_pixel_row(const float* pixels, int width, int channels, float* row);
+/// Copies pixels[x · channels + c], x in [0, width), to planes[c · stride + x]. Margins become 0.
+/// channels is 1, 3 or 4. Identical on every instruction set.
+void load_pixel_planes(const std::uint8_t* pixels, int width, int channels, std::ptrdiff_t stride,
+                       float* planes);
+void load_pixel_planes(const std::uint16_t* pixels, int width, int channels, std::ptrdiff_t stride,
+                       float* planes);
+void load_pixel_planes(const float* pixels, int width, int channels, std::ptrdiff_t stride,
+                       float* planes);
 
 }  // namespace vantage::kernels

@@ -87,29 +87,35 @@ T mixed(T own, T left, T right, int of_left, int of_right) {
 template <typename T>
 void mix(const std::uint8_t* shares, int width, int channels, T* pixels) {
   constexpr int kPixelsAtOnce = 4;
+  constexpr int kBitsPerPixel = 16;
   T original[4] = {};  // value of `original_x` before it was changed
   int original_x = -1;
-  for (int begin = 0; begin < width; begin += kPixelsAtOnce) {
-    const int end = std::min(begin + kPixelsAtOnce, width);
-    std::uint64_t some = 0;
-    std::memcpy(&some, shares + 2 * begin, static_cast<std::size_t>(2 * (end - begin)));
-    for (int x = begin; some != 0 && x < end; ++x) {
-      const int of_left = shares[2 * x];
-      const int of_right = shares[2 * x + 1];
-      if (of_left + of_right == 0) {
-        continue;
-      }
-      T* pixel = pixels + x * channels;
-      const T* left = of_left == 0 ? pixel : original_x == x - 1 ? original : pixel - channels;
-      const T* right = of_right == 0 ? pixel : pixel + channels;
-      for (int c = 0; c < channels; ++c) {
-        const T own = pixel[c];
-        const T left_value = left[c];
-        original[c] = own;
-        pixel[c] = mixed(own, left_value, right[c], of_left, of_right);
-      }
-      original_x = x;
+  const auto mix_pixel = [&](int x) {
+    const int of_left = shares[2 * x];
+    const int of_right = shares[2 * x + 1];
+    T* pixel = pixels + x * channels;
+    const T* left = of_left == 0 ? pixel : original_x == x - 1 ? original : pixel - channels;
+    const T* right = of_right == 0 ? pixel : pixel + channels;
+    for (int c = 0; c < channels; ++c) {
+      const T own = pixel[c];
+      const T left_value = left[c];
+      original[c] = own;
+      pixel[c] = mixed(own, left_value, right[c], of_left, of_right);
     }
+    original_x = x;
+  };
+  int begin = 0;
+  for (; begin + kPixelsAtOnce <= width; begin += kPixelsAtOnce) {
+    std::uint64_t rest = 0;  // little-endian: the first pixel has the lowest bits
+    std::memcpy(&rest, shares + 2 * begin, sizeof(rest));
+    while (rest != 0) {
+      const int i = std::countr_zero(rest) / kBitsPerPixel;
+      mix_pixel(begin + i);
+      rest &= ~std::uint64_t{0} << (kBitsPerPixel * i) << kBitsPerPixel;
+    }
+  }
+  for (; begin < width; ++begin) {
+    mix_pixel(begin);
   }
 }
 

@@ -152,17 +152,20 @@ HWY_INLINE int blend_byte_pixels(const WarpedPairRow& pair, const BlendWeights& 
   if constexpr (kAtOnce == 1) {
     return 0;
   }
-  const auto pixel_of_lane = hn::IndicesFromVec(d, hn::ShiftRight<2>(hn::Iota(d32, 0)));
+  const auto pixel_of_lane = hn::ShiftRight<2>(hn::Iota(d32, 0));
   const auto left_scale = hn::LoadDup128(d, weights.left_scale);
   const auto left_offset = hn::LoadDup128(d, weights.left_offset);
   const auto right_scale = hn::LoadDup128(d, weights.right_scale);
   const auto right_offset = hn::LoadDup128(d, weights.right_offset);
   const auto one = hn::Set(d, 1.0F);
+  // Loaded as it was stored: a load of a part of it, or of more, would wait.
+  const auto weights_of_all = hn::Load(d, left_weights);
   int i = 0;
   for (; i + kAtOnce <= count && x + i + kAtOnce + kRoomPx <= pair.width; i += kAtOnce) {
     const auto left = hn::LoadU(d, pair.left_colours + (x + i) * 4);
     const auto right = hn::LoadU(d, pair.right_colours + (x + i) * 4);
-    const auto weight = hn::TableLookupLanes(hn::LoadU(d, left_weights + i), pixel_of_lane);
+    const auto weight = hn::TableLookupLanes(
+        weights_of_all, hn::IndicesFromVec(d, hn::Add(pixel_of_lane, hn::Set(d32, i))));
     // Mul and Add, never MulAdd: results must not depend on the instruction set.
     const auto left_part = hn::Mul(weight, hn::Add(hn::Mul(left_scale, left), left_offset));
     const auto right_part =
@@ -210,8 +213,7 @@ HWY_INLINE int blend_any(const WarpedPairRow& pair, const BlendWeights& weights,
   const hn::ScalableTag<float> d;
   const hn::FixedTag<float, 1> d_one;
   const int step = static_cast<int>(hn::Lanes(d));
-  // Read in whole vectors from any of them.
-  HWY_ALIGN float left_weights[2 * hn::MaxLanes(hn::ScalableTag<float>())] = {};
+  HWY_ALIGN float left_weights[hn::MaxLanes(hn::ScalableTag<float>())] = {};
   int holes = 0;
   const auto block = [&](auto tag, int x) HWY_ATTR {
     const int count = static_cast<int>(hn::Lanes(tag));

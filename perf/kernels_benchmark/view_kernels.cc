@@ -38,9 +38,10 @@ template <int kChannels>
 struct AlongRow {
   static constexpr int kPixelLanes = kernels::pixel_lanes(kChannels);
   std::vector<float> map = disparities(1);
-  kernels::RowWithMargins map_row{map, 1, kernels::kUnknownDisparity};
+  kernels::RowWithMargins map_row{map, kernels::kUnknownDisparity};
   AlignedValues<std::uint8_t> pixels{kCount * kChannels, 256, 1};
-  AlignedValues<float> pixel_row{(kCount + 2 * kernels::kRowMarginPx) * kPixelLanes};
+  static constexpr std::size_t kStride = kCount + 2 * kernels::kRowMarginPx;
+  AlignedValues<float> planes{kStride * kChannels};
   AlignedValues<float> warped_px{kCount};
   AlignedValues<float> source_column{kCount};
   AlignedValues<float> colours{kCount * kPixelLanes};
@@ -49,15 +50,17 @@ struct AlongRow {
     load();
     warp();
   }
-  float* first_pixel() { return pixel_row.data() + kernels::kRowMarginPx * kPixelLanes; }
-  void load() { kernels::load_pixel_row(pixels.data(), kWidth, kChannels, first_pixel()); }
+  float* first_pixel() { return planes.data() + kernels::kRowMarginPx; }
+  void load() {
+    kernels::load_pixel_planes(pixels.data(), kWidth, kChannels, kStride, first_pixel());
+  }
   void warp() {
     kernels::forward_warp_row({map.data(), kWidth, 0.5, 1}, warped_px.data(), source_column.data());
   }
   void fetch() {
-    kernels::fetch_bicubic_row(
-        {first_pixel(), map_row.row(), warped_px.data(), kWidth, kPixelLanes, 0.5, 1, 255, true},
-        colours.data());
+    kernels::fetch_bicubic_row({first_pixel(), kStride, map_row.row(), warped_px.data(), kWidth,
+                                kChannels, 0.5, 1, 255, true},
+                               colours.data());
   }
 };
 
@@ -198,8 +201,8 @@ KernelBenchmarks view_kernels() {
       of_pixels<Blend>("intensity_sums_row/RGB", {0, 40}, [](Blend& d) { d.sum(); });
   sums.has_vectors = false;
   return {
-      of_pixels<Grey>("load_pixel_row/grey", {0, 5}, [](Grey& d) { d.load(); }),
-      of_pixels<Colour>("load_pixel_row/RGB", {0, 19}, [](Colour& d) { d.load(); }),
+      of_pixels<Grey>("load_pixel_planes/grey", {0, 5}, [](Grey& d) { d.load(); }),
+      of_pixels<Colour>("load_pixel_planes/RGB", {0, 19}, [](Colour& d) { d.load(); }),
       of_pixels<Grey>("forward_warp_row", {0, 12}, [](Grey& d) { d.warp(); }),
       // Position 5, weights, surfaces of the taps 8; then 7 and two limits per channel.
       of_pixels<Grey>("fetch_bicubic_row/grey", {5 + kKeysWeights + 8 + 9, 40},

@@ -9,7 +9,7 @@ class PixelRow : public testing::Test {};
 using PixelTypes = testing::Types<std::uint8_t, std::uint16_t, float>;
 TYPED_TEST_SUITE(PixelRow, PixelTypes);
 
-TYPED_TEST(PixelRow, WidensPixelsAndClearsTheRest) {
+TYPED_TEST(PixelRow, PlanesOfWidenedPixels) {
   std::mt19937 random(7);
   for (const int width : kAwkwardWidths) {
     for (const int channels : {1, 3, 4}) {
@@ -18,19 +18,19 @@ TYPED_TEST(PixelRow, WidensPixelsAndClearsTheRest) {
       for (TypeParam& value : pixels) {
         value = static_cast<TypeParam>(random() % 60000);
       }
-      const int lanes = pixel_lanes(channels);
-      const int margin = kRowMarginPx * lanes;
-      std::vector<float> expected(width * lanes + 2 * margin, 0.0F);
-      for (int x = 0; x < width; ++x) {
-        for (int c = 0; c < channels; ++c) {
-          expected[margin + x * lanes + c] = static_cast<float>(pixels[x * channels + c]);
+      const int stride = width + 2 * kRowMarginPx + 3;
+      std::vector<float> expected(stride * channels, -1.0F);
+      for (int c = 0; c < channels; ++c) {
+        std::fill_n(expected.begin() + c * stride, width + 2 * kRowMarginPx, 0.0F);
+        for (int x = 0; x < width; ++x) {
+          expected[c * stride + kRowMarginPx + x] = static_cast<float>(pixels[x * channels + c]);
         }
       }
-      std::vector<float> row;
+      std::vector<float> planes;
       for_each_target([&] {
-        row.assign(expected.size(), -1.0F);
-        load_pixel_row(pixels.data(), width, channels, row.data() + margin);
-        ASSERT_EQ(row, expected) << width << " wide, " << channels << " channels";
+        planes.assign(expected.size(), -1.0F);
+        load_pixel_planes(pixels.data(), width, channels, stride, planes.data() + kRowMarginPx);
+        ASSERT_EQ(planes, expected) << width << " wide, " << channels << " channels";
       });
     }
   }

@@ -188,19 +188,17 @@ TYPED_TEST(SurfaceFetch, InOneRowIsTheFetchAlongIt) {
           value = std::clamp(value, 0.0F, 1.0F);
         }
       }
-      const int lanes = pixel_lanes(channels);
       const int y = random_int(random, 0, height - 1);
-      std::vector<float> pixels((width + 2 * kRowMarginPx) * lanes);
-      load_pixel_row(scene.pixels.data() + y * scene.stride, width, channels,
-                     pixels.data() + kRowMarginPx * lanes);
+      const PlanesWithMargins pixels(scene.pixels.data() + y * scene.stride, width, channels);
       const float* map_row = scene.map.data() + y * width;
-      const RowWithMargins map(std::vector<float>(map_row, map_row + width), 1, kUnknownDisparity);
+      const RowWithMargins map(std::vector<float>(map_row, map_row + width), kUnknownDisparity);
       const double s = 0.37;
       std::vector<float> warped(width);
       for (int n = 0; n < width; ++n) {
         // A disparity that one of the two pixels around the position has.
         const float d = scene.at(std::clamp(n + random_int(random, -1, 1), 0, width - 1), y);
-        const double x = std::clamp(n + s * d, -1.0, width - 0.5);
+        // The product of floats, as of fetch_bicubic_row().
+        const double x = std::clamp(n + double{static_cast<float>(s) * d}, -1.0, width - 0.5);
         const auto seen = [&](double column) {
           return column >= 0 && column < width &&
                  std::abs(scene.at(static_cast<int>(column), y) - d) <= 1;
@@ -210,11 +208,12 @@ TYPED_TEST(SurfaceFetch, InOneRowIsTheFetchAlongIt) {
         scene.add(x, y, warped[n]);
       }
       std::vector<float> expected(scene.values());
-      fetch_bicubic_row({.pixels = pixels.data() + kRowMarginPx * lanes,
+      fetch_bicubic_row({.pixels = pixels.row(),
+                         .stride = pixels.stride(),
                          .source_disparity_px = map.row(),
                          .warped_disparity_px = warped.data(),
                          .width = width,
-                         .lanes = lanes,
+                         .channels = channels,
                          .camera_offset = s,
                          .gradient_limit_px = 1,
                          .largest_value = kLargestValue<T>},

@@ -35,16 +35,30 @@ inline std::vector<float> random_disparities(std::mt19937& random, int width, fl
 /// A row with margins around copies of `values`.
 class RowWithMargins {
  public:
-  RowWithMargins(const std::vector<float>& values, int lanes, float margin) : lanes_(lanes) {
-    const std::size_t extra = static_cast<std::size_t>(kRowMarginPx * lanes);
-    memory_.assign(extra, margin);
+  RowWithMargins(const std::vector<float>& values, float margin) {
+    memory_.assign(kRowMarginPx, margin);
     memory_.insert(memory_.end(), values.begin(), values.end());
-    memory_.insert(memory_.end(), extra, margin);
+    memory_.insert(memory_.end(), kRowMarginPx, margin);
   }
-  [[nodiscard]] const float* row() const { return memory_.data() + kRowMarginPx * lanes_; }
+  [[nodiscard]] const float* row() const { return memory_.data() + kRowMarginPx; }
 
  private:
-  int lanes_;
+  std::vector<float> memory_;
+};
+
+/// load_pixel_planes() of interleaved pixels, in memory of exactly the size that may be read.
+class PlanesWithMargins {
+ public:
+  template <typename T>
+  PlanesWithMargins(const T* pixels, int width, int channels)
+      : stride_(width + 2 * kRowMarginPx), memory_(stride_ * channels) {
+    load_pixel_planes(pixels, width, channels, stride_, memory_.data() + kRowMarginPx);
+  }
+  [[nodiscard]] const float* row() const { return memory_.data() + kRowMarginPx; }
+  [[nodiscard]] std::ptrdiff_t stride() const { return stride_; }
+
+ private:
+  std::ptrdiff_t stride_;
   std::vector<float> memory_;
 };
 

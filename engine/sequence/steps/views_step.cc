@@ -86,12 +86,8 @@ bool is_on_baseline(const SequenceOptions& options, const ViewPath& view) {
 
 /// Rendering a view on the baseline.
 std::size_t baseline_view_bytes(const SequenceOptions& options, const PairShape& shape) {
-  const int width = shape.source.width_px;
-  const int height = shape.source.height_px;
-  return ViewSynthesizer::filling_bytes(options.synthesis, width, height, shape.channels) +
-         (options.intensity_fit == FitScope::kFrame
-              ? ViewSynthesizer::working_bytes(width, height, shape.channels)
-              : 0);
+  return ViewSynthesizer::filling_bytes(options.synthesis, shape.source.width_px,
+                                        shape.source.height_px, shape.channels);
 }
 
 /// Rendering a view at any `pose`.
