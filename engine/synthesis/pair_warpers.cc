@@ -36,7 +36,10 @@ SynthesisOptions options_at(double distance, SynthesisOptions options) {
 }  // namespace
 
 template <typename T>
-struct RowPairWarper<T>::SourceRows {
+struct RowPairWarper<T>::SourceRow {
+  const T* pixels;
+  const float* map_px;
+  double camera_offset;
   float* planes;          // of x = 0; margins on both sides
   std::ptrdiff_t stride;  // floats between planes
   float* disparity_px;    // also with margins
@@ -58,45 +61,96 @@ std::size_t RowPairWarper<T>::scratch_floats() const {
   if (!source_.left_photograph.empty()) {
     return position_floats(width()) + row_floats(width(), 1);
   }
+  return 2 * source_row_floats();
+}
+
+template <typename T>
+std::size_t RowPairWarper<T>::source_row_floats() const {
   const int padded = width() + 2 * kernels::kRowMarginPx;
   return row_floats(padded, 1) * static_cast<std::size_t>(source_.left.channels() + 1) +
          row_floats(width(), 1);
 }
 
 template <typename T>
-void RowPairWarper<T>::warp_one(const T* pixels, const float* disparity_px, double camera_offset,
-                                const SourceRows& rows, float* colours,
-                                float* warped_disparity_px) const {
+std::array<typename RowPairWarper<T>::SourceRow, 2> RowPairWarper<T>::source_rows(
+    int y, std::span<float> scratch) const {
+  constexpr int kMargin = kernels::kRowMarginPx;
+  const std::size_t row = row_floats(width() + 2 * kMargin, 1);
+  const auto source_row = [&](std::size_t side, ImageView<const T> image,
+                              ImageView<const float> map_px) {
+    float* const planes = scratch.data() + side * source_row_floats();
+    float* const disparity_px = planes + row * static_cast<std::size_t>(image.channels());
+    // The cameras are at 0 and 1 (3.5).
+    return SourceRow{.pixels = image.row(y),
+                     .map_px = map_px.row(y),
+                     .camera_offset = view_x_ - static_cast<double>(side),
+                     .planes = planes + kMargin,
+                     .stride = static_cast<std::ptrdiff_t>(row),
+                     .disparity_px = disparity_px + kMargin,
+                     .column = disparity_px + row};
+  };
+  return {source_row(0, source_.left, source_.left_disparity),
+          source_row(1, source_.right, source_.right_disparity)};
+}
+
+// Its place in the view; how its colours get there by interpolation.
+template <typename T>
+kernels::BicubicFetchRow RowPairWarper<T>::map_forward(const SourceRow& row,
+                                                       float* warped_disparity_px) const {
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   const auto limit = static_cast<float>(options_.disparity_gradient_limit_px);
   const bool forward = options_.warp == WarpColour::kForward;
   const int channels = source_.left.channels();
-  kernels::load_pixel_planes(pixels, width(), channels, rows.stride, rows.planes);
-  std::copy_n(disparity_px, width(), rows.disparity_px);
-  kernels::forward_warp_row({.disparity_px = rows.disparity_px,
+  kernels::load_pixel_planes(row.pixels, width(), channels, row.stride, row.planes);
+  std::fill_n(row.disparity_px - kernels::kRowMarginPx, kernels::kRowMarginPx, kUnknown);
+  std::copy_n(row.map_px, width(), row.disparity_px);
+  std::fill_n(row.disparity_px + width(), kernels::kRowMarginPx, kUnknown);
+  kernels::forward_warp_row({.disparity_px = row.disparity_px,
                              .width = width(),
-                             .camera_offset = camera_offset,
+                             .camera_offset = row.camera_offset,
                              .gradient_limit_px = limit},
-                            warped_disparity_px, forward ? rows.column : nullptr);
-  if (forward) {
-    kernels::fetch_forward_row({.pixels = rows.planes,
-                                .stride = rows.stride,
-                                .source_column = rows.column,
+                            warped_disparity_px, forward ? row.column : nullptr);
+  return {.pixels = row.planes,
+          .stride = row.stride,
+          .source_disparity_px = row.disparity_px,
+          .warped_disparity_px = warped_disparity_px,
+          .width = width(),
+          .channels = channels,
+          .camera_offset = row.camera_offset,
+          .gradient_limit_px = limit,
+          .largest_value = kernels::kLargestValue<T>,
+          .is_in_range = std::is_integral_v<T>};
+}
+
+template <typename T>
+void RowPairWarper<T>::warp_one(const SourceRow& row, float* colours,
+                                float* warped_disparity_px) const {
+  const kernels::BicubicFetchRow fetched = map_forward(row, warped_disparity_px);
+  if (options_.warp == WarpColour::kForward) {
+    kernels::fetch_forward_row({.pixels = row.planes,
+                                .stride = row.stride,
+                                .source_column = row.column,
                                 .width = width(),
-                                .channels = channels},
+                                .channels = fetched.channels},
                                colours);
   } else {
-    kernels::fetch_bicubic_row({.pixels = rows.planes,
-                                .stride = rows.stride,
-                                .source_disparity_px = rows.disparity_px,
-                                .warped_disparity_px = warped_disparity_px,
-                                .width = width(),
-                                .channels = channels,
-                                .camera_offset = camera_offset,
-                                .gradient_limit_px = limit,
-                                .largest_value = kernels::kLargestValue<T>,
-                                .is_in_range = std::is_integral_v<T>},
-                               colours);
+    kernels::fetch_bicubic_row(fetched, colours);
   }
+}
+
+template <typename T>
+bool RowPairWarper<T>::blends() const {
+  return source_.left_photograph.empty() && options_.warp == WarpColour::kOnePass;
+}
+
+template <typename T>
+int RowPairWarper<T>::blend(int y, const kernels::BlendWeights& weights, std::span<float> scratch,
+                            float* memory, const kernels::BlendedRow<T>& view) const {
+  const WarpedPairLayout at(width(), source_.left.channels());
+  const std::array<SourceRow, 2> rows = source_rows(y, scratch);
+  return kernels::blend_fetched_row({.left = map_forward(rows[0], memory + at.left_nearness),
+                                     .right = map_forward(rows[1], memory + at.right_nearness)},
+                                    weights, view);
 }
 
 // The warp moves whole rows of the rectified image, so positions there are exact columns of row y.
@@ -125,40 +179,18 @@ void RowPairWarper<T>::warp_from_photograph(const SurfaceColours<T>& from, int y
 
 template <typename T>
 void RowPairWarper<T>::warp(int y, std::span<float> scratch, float* memory) const {
+  const WarpedPairLayout at(width(), source_.left.channels());
   if (source_.left_photograph.empty()) {
-    warp_rectified(y, scratch, memory);
+    const std::array<SourceRow, 2> rows = source_rows(y, scratch);
+    warp_one(rows[0], memory + at.left_colours, memory + at.left_nearness);
+    warp_one(rows[1], memory + at.right_colours, memory + at.right_nearness);
     return;
   }
-  const WarpedPairLayout at(width(), source_.left.channels());
   const auto limit = static_cast<float>(options_.disparity_gradient_limit_px);
   warp_from_photograph({source_.left, source_.left_disparity, source_.left_photograph, limit}, y,
                        view_x_, scratch, memory + at.left_colours, memory + at.left_nearness);
   warp_from_photograph({source_.right, source_.right_disparity, source_.right_photograph, limit}, y,
                        view_x_ - 1, scratch, memory + at.right_colours, memory + at.right_nearness);
-}
-
-template <typename T>
-void RowPairWarper<T>::warp_rectified(int y, std::span<float> scratch, float* memory) const {
-  constexpr int kMargin = kernels::kRowMarginPx;
-  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
-  float* next = scratch.data();
-  SourceRows rows{};
-  const std::size_t row = row_floats(width() + 2 * kMargin, 1);
-  rows.planes = next + kMargin;
-  rows.stride = static_cast<std::ptrdiff_t>(row);
-  next += row * static_cast<std::size_t>(source_.left.channels());
-  rows.disparity_px = next + kMargin;
-  std::fill_n(rows.disparity_px - kMargin, kMargin, kUnknown);
-  std::fill_n(rows.disparity_px + width(), kMargin, kUnknown);
-  next += row;
-  rows.column = next;
-
-  const WarpedPairLayout at(width(), source_.left.channels());
-  // The cameras are at 0 and 1 (3.5).
-  warp_one(source_.left.row(y), source_.left_disparity.row(y), view_x_, rows,
-           memory + at.left_colours, memory + at.left_nearness);
-  warp_one(source_.right.row(y), source_.right_disparity.row(y), view_x_ - 1, rows,
-           memory + at.right_colours, memory + at.right_nearness);
 }
 
 template class RowPairWarper<std::uint8_t>;

@@ -10,6 +10,7 @@
 #include "engine/synthesis/synthesis_options.h"
 #include "engine/synthesis/unrectified_pair.h"
 #include "engine/view_geometry/new_view.h"
+#include "kernels/view_blend/view_blend.h"
 
 namespace vantage {
 
@@ -49,11 +50,19 @@ class RowPairWarper {
   /// Warps scanline y of both images into `memory`, laid out by WarpedPairLayout.
   void warp(int y, std::span<float> scratch, float* memory) const;
 
+  /// Whether blend() can be called: colours are interpolated in rectified images.
+  [[nodiscard]] bool blends() const;
+  /// blend_row() of what warp() makes of scanline y, in one go: only the disparities are written to
+  /// `memory`. Returns the number of holes.
+  int blend(int y, const kernels::BlendWeights& weights, std::span<float> scratch, float* memory,
+            const kernels::BlendedRow<T>& view) const;
+
  private:
-  struct SourceRows;
-  void warp_one(const T* pixels, const float* disparity_px, double camera_offset,
-                const SourceRows& rows, float* colours, float* warped_disparity_px) const;
-  void warp_rectified(int y, std::span<float> scratch, float* memory) const;
+  struct SourceRow;
+  [[nodiscard]] std::size_t source_row_floats() const;
+  [[nodiscard]] std::array<SourceRow, 2> source_rows(int y, std::span<float> scratch) const;
+  kernels::BicubicFetchRow map_forward(const SourceRow& row, float* warped_disparity_px) const;
+  void warp_one(const SourceRow& row, float* colours, float* warped_disparity_px) const;
   void warp_from_photograph(const SurfaceColours<T>& from, int y, double camera_offset,
                             std::span<float> scratch, float* colours,
                             float* warped_disparity_px) const;

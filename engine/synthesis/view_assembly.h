@@ -72,9 +72,10 @@ class ViewAssembly {
   }
 
   kernels::IntensitySums intensity_sums() {
-    for_each_warped_row(
-        std::max(1, height_ / kFitRows), [&](int y, const kernels::WarpedPairRow& pair) {
-          records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(pair);
+    for_each_row(
+        std::max(1, height_ / kFitRows), [&](int y, std::span<float> scratch, float* pair) {
+          warper_.warp(y, scratch, pair);
+          records_[static_cast<std::size_t>(y)].sums = kernels::intensity_sums_row(warped_in(pair));
         });
     kernels::IntensitySums total;
     for (const ViewRowRecord& record : records_) {
@@ -84,9 +85,14 @@ class ViewAssembly {
   }
 
  private:
-  // Calls body(y, warped scanline pair) for every `step`th row, from step / 2 on.
+  [[nodiscard]] kernels::WarpedPairRow warped_in(const float* pair) const {
+    return layout_.row_in(pair, options_.disparity_gradient_limit_px);
+  }
+
+  // Calls body(y, scratch memory, memory for a pair of warped scanlines) for every `step`th row,
+  // from step / 2 on.
   template <typename Body>
-  void for_each_warped_row(int step, const Body& body) {
+  void for_each_row(int step, const Body& body) {
     const std::size_t scratch_floats = warper_.scratch_floats();
     const int first_y = step / 2;
     execution_.for_each_band((height_ - first_y + step - 1) / step, [&](int first, int end) {
@@ -95,10 +101,21 @@ class ViewAssembly {
       auto* scratch = reinterpret_cast<float*>(memory.data());
       float* const pair = scratch + scratch_floats;
       for (int y = first_y + step * first; y < first_y + step * end; y += step) {
-        warper_.warp(y, {scratch, scratch_floats}, pair);
-        body(y, layout_.row_in(pair, options_.disparity_gradient_limit_px));
+        body(y, std::span<float>(scratch, scratch_floats), pair);
       }
     });
+  }
+
+  // Returns the number of holes. `pair` has the disparities then.
+  int blend_row(int y, const kernels::BlendWeights& weights, std::span<float> scratch, float* pair,
+                const kernels::BlendedRow<T>& row) const {
+    if constexpr (requires { warper_.blends(); }) {
+      if (warper_.blends()) {
+        return warper_.blend(y, weights, scratch, pair, row);
+      }
+    }
+    warper_.warp(y, scratch, pair);
+    return kernels::blend_row(warped_in(pair), weights, channels_, row);
   }
 
   void combine(Image<T>& image, SynthesizedView& view) {
@@ -108,18 +125,17 @@ class ViewAssembly {
     weights.trust_at_ends = ViewFinisher<T>::trust_at_ends(options_, alpha);
     ViewFinisher<T> finisher(options_, alpha, outline_places(), image.view(), view.sources.view(),
                              execution_);
-    for_each_warped_row(1, [&](int y, const kernels::WarpedPairRow& pair) {
+    for_each_row(1, [&](int y, std::span<float> scratch, float* pair) {
       const auto memory =
           execution_.scratch().lease(static_cast<std::size_t>(width_) * sizeof(float));
       auto* disparity_px = reinterpret_cast<float*>(memory.data());
-      const int row_holes =
-          kernels::blend_row(pair, weights, channels_,
-                             kernels::BlendedRow<T>{.pixels = image.row(y),
-                                                    .disparity_px = disparity_px,
-                                                    .holes = view.holes.row(y),
-                                                    .sources = view.sources.row(y)});
+      const int row_holes = blend_row(y, weights, scratch, pair,
+                                      kernels::BlendedRow<T>{.pixels = image.row(y),
+                                                             .disparity_px = disparity_px,
+                                                             .holes = view.holes.row(y),
+                                                             .sources = view.sources.row(y)});
       records_[static_cast<std::size_t>(y)].holes = row_holes;
-      finisher.finish_row({y, pair, disparity_px, row_holes});
+      finisher.finish_row({y, warped_in(pair), disparity_px, row_holes});
     });
     finisher.finish_view();
   }

@@ -54,10 +54,10 @@ HWY_INLINE void find_targets(const ForwardWarpRow& row, const float* HWY_RESTRIC
   }
 }
 
-// A bit per column of 64 of a block.
+// A bit per column of 64 of a block: how it lands after the one that is processed before it.
 struct WordBits {
-  std::uint64_t gaps = 0;  // the sampling gap between it and the one processed before it is filled
-  std::uint64_t starts = 0;  // it does not land beside the column to its left
+  std::uint64_t gaps = 0;    // a sampling gap between them is filled
+  std::uint64_t breaks = 0;  // not beside it
 };
 
 // Bits of `count` columns of a block from `first` on.
@@ -68,9 +68,9 @@ HWY_INLINE WordBits find_bits(float gradient_limit_px, const Block& block, int f
   const auto limit = hn::Set(d, gradient_limit_px);
   const auto one = hn::Set(di, 1);
   const auto bits_of = [d](hn::MFromD<Columns> mask) HWY_ATTR {
-    std::uint8_t bits[8] = {};
-    hn::StoreMaskBits(d, mask, bits);
-    return std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8;
+    std::uint64_t bits = 0;  // little-endian
+    hn::StoreMaskBits(d, mask, reinterpret_cast<std::uint8_t*>(&bits));
+    return bits;
   };
   WordBits found;
   for (int i = 0; i < count; i += kLanes) {
@@ -82,13 +82,13 @@ HWY_INLINE WordBits find_bits(float gradient_limit_px, const Block& block, int f
         kStep > 0 ? hn::Sub(target, previous_target) : hn::Sub(previous_target, target);
     const auto rise = hn::Abs(hn::Sub(hn::LoadU(d, block.disparity_px + here),
                                       hn::LoadU(d, block.disparity_px + previous)));
-    const auto beside = hn::Add(hn::LoadU(di, block.target + here - 1), one);
     found.gaps |= bits_of(hn::And(hn::RebindMask(d, hn::Gt(distance, one)), hn::Le(rise, limit)))
                   << i;
-    found.starts |= bits_of(hn::RebindMask(d, hn::Ne(target, beside))) << i;
+    found.breaks |= bits_of(hn::RebindMask(d, hn::Ne(distance, one))) << i;
   }
   const std::uint64_t all = ~std::uint64_t{0} >> (kWord - count);
-  return {found.gaps & all, (found.starts & all) | 1};
+  const std::uint64_t processed_first = std::uint64_t{1} << (kStep > 0 ? 0 : count - 1);
+  return {found.gaps & all, (found.breaks & all) | processed_first};
 }
 
 // Output of a pass; kColumns: whether source columns are requested.
@@ -165,28 +165,27 @@ template <int kStep, bool kColumns>
 HWY_INLINE void write_word(const ForwardWarpRow& row, const Block& block, int word, int count,
                            Output<kColumns> output) {
   const WordBits bits = find_bits<kStep>(row.gradient_limit_px, block, word, count);
-  // Columns [first, end), whose gap is before the one that is processed first.
-  const auto write = [&](int first, int end) HWY_ATTR {
-    const int begin = kStep > 0 ? first : end - 1;
-    if ((bits.gaps >> begin & 1U) != 0) {
-      fill_sampling_gap(row, block, word + begin, kStep, output);
+  const auto fill_gap_before = [&](int i) HWY_ATTR {
+    if ((bits.gaps >> i & 1U) != 0) {
+      fill_sampling_gap(row, block, word + i, kStep, output);
     }
-    write_run(block, word + first, word + end, row.width, output);
   };
-  std::uint64_t starts = bits.starts;
-  if (kStep > 0) {
-    while (starts != 0) {
-      const auto first = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(starts));
-      starts &= starts - 1;
-      write(first,
-            starts != 0 ? static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(starts)) : count);
-    }
-  } else {
-    for (int end = count; starts != 0;) {
-      const auto first = static_cast<int>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(starts));
-      starts &= ~(std::uint64_t{1} << first);
-      write(first, end);
-      end = first;
+  std::uint64_t breaks = bits.breaks;
+  while (breaks != 0) {
+    if (kStep > 0) {
+      const auto first = static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(breaks));
+      breaks &= breaks - 1;
+      const int end =
+          breaks != 0 ? static_cast<int>(hwy::Num0BitsBelowLS1Bit_Nonzero64(breaks)) : count;
+      fill_gap_before(first);
+      write_run(block, word + first, word + end, row.width, output);
+    } else {
+      const auto last = static_cast<int>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(breaks));
+      breaks &= ~(std::uint64_t{1} << last);
+      const int before =
+          breaks != 0 ? static_cast<int>(63 - hwy::Num0BitsAboveMS1Bit_Nonzero64(breaks)) : -1;
+      fill_gap_before(last);
+      write_run(block, word + before + 1, word + last + 1, row.width, output);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "kernels/colour_fetch/colour_fetch.h"
 #include "kernels/intensity_sums/intensity_sums.h"
 
 namespace vantage::kernels {
@@ -48,5 +49,21 @@ int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channe
               const BlendedRow<std::uint16_t>& view);
 int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channels,
               const BlendedRow<float>& view);
+
+/// The two images of a row of the view, of one width, number of channels and gradient limit; values
+/// of integer types are in range.
+struct FetchedPairRow {
+  BicubicFetchRow left;
+  BicubicFetchRow right;
+};
+
+/// blend_row() of what fetch_bicubic_row() makes of both rows, without storing it in between.
+/// Identical to the two, and on every instruction set.
+int blend_fetched_row(const FetchedPairRow& fetched, const BlendWeights& weights,
+                      const BlendedRow<std::uint8_t>& view);
+int blend_fetched_row(const FetchedPairRow& fetched, const BlendWeights& weights,
+                      const BlendedRow<std::uint16_t>& view);
+int blend_fetched_row(const FetchedPairRow& fetched, const BlendWeights& weights,
+                      const BlendedRow<float>& view);
 
 }  // namespace vantage::kernels

@@ -57,11 +57,17 @@ struct AlongRow {
   void warp() {
     kernels::forward_warp_row({map.data(), kWidth, 0.5, 1}, warped_px.data(), source_column.data());
   }
-  void fetch() {
-    kernels::fetch_bicubic_row({first_pixel(), kStride, map_row.row(), warped_px.data(), kWidth,
-                                kChannels, 0.5, 1, 255, true},
-                               colours.data());
+  [[nodiscard]] kernels::BicubicFetchRow row() {
+    return {.pixels = first_pixel(),
+            .stride = kStride,
+            .source_disparity_px = map_row.row(),
+            .warped_disparity_px = warped_px.data(),
+            .width = kWidth,
+            .channels = kChannels,
+            .camera_offset = 0.5,
+            .is_in_range = true};
   }
+  void fetch() { kernels::fetch_bicubic_row(row(), colours.data()); }
 };
 
 /// An image and positions in it, all on one surface.
@@ -169,6 +175,21 @@ struct Rolled {
   }
 };
 
+/// Fetches and blends two rows of colours.
+struct FetchedBlend {
+  AlongRow<3> image;
+  AlignedValues<std::uint8_t> pixels{kCount * 3};
+  AlignedValues<float> disparity_px{kCount};
+  AlignedValues<std::uint8_t> holes{kCount};
+  AlignedValues<std::uint8_t> sources{kCount};
+
+  void blend() {
+    kernels::blend_fetched_row({image.row(), image.row()}, {},
+                               kernels::BlendedRow<std::uint8_t>{pixels.data(), disparity_px.data(),
+                                                                 holes.data(), sources.data()});
+  }
+};
+
 /// Blends two warped rows of colours.
 struct Blend {
   std::mt19937 random{1};
@@ -223,6 +244,10 @@ KernelBenchmarks view_kernels() {
       of_pixels<Rolled>("splat_rows", {0, 32}, [](Rolled& d) { d.splat(); }),
       of_pixels<Rolled>("source_positions_row", {0, 28}, [](Rolled& d) { d.find_sources(); }),
       of_pixels<Blend>("blend_row/RGB", {0, 49}, [](Blend& d) { d.blend(); }),
+      // Both fetches and the blending, without the colours in between.
+      of_pixels<FetchedBlend>("blend_fetched_row/RGB",
+                              {2 * (5 + kKeysWeights + 8 + 27) + 40, 2 * 84 + 9},
+                              [](FetchedBlend& d) { d.blend(); }),
       sums,
   };
 }

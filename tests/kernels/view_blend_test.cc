@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include "kernels/forward_warp/forward_warp.h"
 #include "kernels/pixel_row/pixel_row.h"
 #include "tests/kernels/synthesis_rows.h"
 
@@ -128,6 +129,73 @@ TYPED_TEST(ViewBlend, FollowsTheEquationOnEveryInstructionSet) {
           ASSERT_EQ(view.holes, first.holes);
           ASSERT_EQ(view.sources, first.sources);
           ASSERT_TRUE(are_same(view.disparity_px, first.disparity_px));
+        });
+      }
+    }
+  }
+}
+
+/// One image of a pair, warped by `s` from a map with jumps.
+template <typename T>
+struct FetchedImage {
+  RowWithMargins map;
+  std::vector<float> warped_px;
+  PlanesWithMargins planes;
+  BicubicFetchRow row;
+
+  FetchedImage(const std::vector<float>& d, const std::vector<T>& pixels, int channels, double s)
+      : map(d, kUnknownDisparity),
+        warped_px(d.size()),
+        planes(pixels.data(), static_cast<int>(d.size()), channels) {
+    const auto width = static_cast<int>(d.size());
+    forward_warp_row({d.data(), width, s, 1}, warped_px.data(), nullptr);
+    row = {planes.row(),
+           planes.stride(),
+           map.row(),
+           warped_px.data(),
+           width,
+           channels,
+           s,
+           1.0F,
+           kLargestValue<T>,
+           std::is_integral_v<T>};
+  }
+};
+
+TYPED_TEST(ViewBlend, OfFetchedRowsIsThatOfStoredOnes) {
+  using T = TypeParam;
+  std::mt19937 random(9);
+  for (const int width : kAwkwardWidths) {
+    for (const int channels : {1, 3, 4}) {
+      const auto image = [&](double s) {
+        std::vector<T> pixels(width * channels);
+        for (T& value : pixels) {
+          value = static_cast<T>(static_cast<double>(random() % 1001) / 1000 * kLargestValue<T>);
+        }
+        return FetchedImage<T>(random_disparities(random, width, 0, 9), pixels, channels, s);
+      };
+      const FetchedImage<T> left = image(0.4);
+      const FetchedImage<T> right = image(-0.6);
+      const int lanes = pixel_lanes(channels);
+      std::vector<float> left_colours(width * lanes);
+      std::vector<float> right_colours(width * lanes);
+      fetch_bicubic_row(left.row, left_colours.data());
+      fetch_bicubic_row(right.row, right_colours.data());
+      for (const float trust : {1.0F, 0.1F}) {
+        BlendWeights weights = some_weights(0.6F, kLargestValue<T>);
+        weights.trust_at_ends = trust;
+        View<T> expected(width, channels);
+        const int holes =
+            blend_row({left_colours.data(), right_colours.data(), left.warped_px.data(),
+                       right.warped_px.data(), width, lanes, 1.0F},
+                      weights, channels, expected.row());
+        for_each_target([&] {
+          View<T> view(width, channels);
+          ASSERT_EQ(blend_fetched_row({left.row, right.row}, weights, view.row()), holes);
+          ASSERT_EQ(view.pixels, expected.pixels) << width << " wide, " << channels << " channels";
+          ASSERT_EQ(view.holes, expected.holes);
+          ASSERT_EQ(view.sources, expected.sources);
+          ASSERT_TRUE(are_same(view.disparity_px, expected.disparity_px));
         });
       }
     }
