@@ -1,5 +1,5 @@
 // Frames/s of the line on machines with other numbers of cores: simulates the pipeline of a run
-// (frames in flight, steps in the order of the frames, steps of many frames at a time) with the
+// (frames in flight, reading and leaving in order, all else of many frames at a time) with the
 // steps' processor times of a measurement. docs/SCALING.md says what was found and what the model
 // leaves out. `--report` takes the file of `vantage run --report` or of `line_speed --json`.
 
@@ -28,8 +28,9 @@ constexpr int kMaxDecoderThreads = 4;  ///< as in engine/io/video/video_reader.c
 constexpr int kWarmUp = 200;
 constexpr int kFrames = 2000;  ///< with the warm-up
 
-/// Reading and writing videos: in the order of the frames, one at a time. All else: side by side.
-enum Step : std::uint8_t { kRead, kCompute, kWrite, kStepCount };
+/// Reading: in the order of the frames, one at a time. All else, encoding of videos included: side
+/// by side.
+enum Step : std::uint8_t { kRead, kCompute, kStepCount };
 
 /// Processor seconds of a frame.
 using StepSeconds = std::array<double, kStepCount>;
@@ -49,8 +50,7 @@ StepSeconds seconds_of(const nlohmann::json& steps, bool maps_only) {
   StepSeconds seconds{};
   for (const auto& [name, value] : steps.items()) {
     if (!maps_only || (name != "views" && name != "write")) {
-      const Step step = name == "read" ? kRead : name == "write" ? kWrite : kCompute;
-      seconds[step] += value.get<double>();
+      seconds[name == "read" ? kRead : kCompute] += value.get<double>();
     }
   }
   return seconds;
@@ -79,8 +79,6 @@ class Line {
     constexpr double kFull = 0.95;
     if (found.cores_busy > kFull) {
       found.limit = "cores";
-    } else if (used_[kWrite] > kFull * time) {
-      found.limit = "encoding the view";
     } else if (used_[kRead] > kFull * time) {
       found.limit = "reading";
     }
@@ -106,9 +104,6 @@ class Line {
   /// A thread takes a frame as far as its turn allows; then the next frame whose turn it is.
   void start_steps() {
     const auto thread_is_free = [&] { return std::ssize(active_) < machine_.cores; };
-    if (thread_is_free() && count(kWrite) == 0 && computed_.erase(next_to_write_) > 0) {
-      start(kWrite, next_to_write_++);
-    }
     for (; !read_.empty() && thread_is_free(); read_.pop_front()) {
       start(kCompute, read_.front());
     }
@@ -122,14 +117,12 @@ class Line {
   void set_rates() {
     const int decoders = std::clamp(machine_.cores / 2, 1, kMaxDecoderThreads);
     const int computing = count(kCompute);
-    const int wanted = computing + count(kWrite) + decoders * count(kRead);
+    const int wanted = computing + decoders * count(kRead);
     const double idle = computing > 0 ? std::max(0, machine_.cores - wanted) : 0;
     const double cores = std::min<double>(machine_.cores, wanted + idle);
     const double share = cores / (wanted + idle);
     for (Active& active : active_) {
-      active.rate = share * (active.step == kRead      ? decoders
-                             : active.step == kCompute ? 1 + idle / computing
-                                                       : 1);
+      active.rate = share * (active.step == kRead ? decoders : 1 + idle / computing);
     }
   }
 
@@ -158,11 +151,11 @@ class Line {
   void end(const Active& active) {
     if (active.step == kRead) {
       read_.push_back(active.frame);
-    } else if (active.step == kCompute) {
-      computed_.insert(active.frame);
-    } else {
+      return;
+    }
+    // A frame keeps its place until all before it have left.
+    for (computed_.insert(active.frame); computed_.erase(written_) > 0; ++written_) {
       ++free_slots_;
-      ++written_;
     }
   }
 
@@ -174,7 +167,6 @@ class Line {
   std::deque<int> read_;
   std::set<int> computed_;  // waiting for their turn
   int next_to_read_ = 0;
-  int next_to_write_ = 0;
   int written_ = 0;
   double now_ = 0;
   StepSeconds used_{};  // time with the step under way
@@ -201,8 +193,8 @@ int run_model(int argc, char** argv) {
     line.refuse(fmt::format("--report is '{}', expected a readable file", report));
   }
   const StepSeconds seconds = seconds_of(steps_of_report(nlohmann::json::parse(file)), maps_only);
-  fmt::print("processor ms per frame: read {:.1f}, side by side {:.1f}, encode the view {:.1f}\n",
-             seconds[kRead] * 1e3, seconds[kCompute] * 1e3, seconds[kWrite] * 1e3);
+  fmt::print("processor ms per frame: read {:.1f}, side by side {:.1f}\n", seconds[kRead] * 1e3,
+             seconds[kCompute] * 1e3);
   fmt::print("{:>6} {:>10} {:>10} {:>6}  limit\n", "cores", "in flight", "frames/s", "busy");
   for (const int cores : {1, 2, 4, 8, 16, 32, 64}) {
     const Machine machine{.cores = cores,

@@ -45,9 +45,10 @@ void add_depth_range_setting(Settings& settings, DepthVideoScale& scale) {
 
 void add_depth_video_settings(Settings& settings, DepthVideoScale& scale, VideoCoding& coding) {
   add_depth_range_setting(settings, scale);
-  settings.choice<VideoCoding>("depth-codec", coding, grey_coding_names(),
-                               "Codec of the depth video, and its bits per pixel: FFV1 is lossless "
-                               "(.mkv); HEVC (.mp4) and ProRes (.mov) where FFmpeg has them");
+  settings.choice<VideoCoding>(
+      "depth-codec", coding, grey_coding_names(),
+      "Codec of the depth video, and its bits per pixel: ffvhuff (fast) and "
+      "FFV1 (smaller) are lossless (.mkv); HEVC (.mp4) and ProRes (.mov) where FFmpeg has them");
 }
 
 }  // namespace vantage::apps

@@ -1,67 +1,34 @@
 #include "engine/sequence/segment_writer.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <memory>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "engine/error.h"
 #include "engine/image/stereo_display.h"
-#include "engine/io/video/stated_format.h"
+#include "engine/io/video/writing/frame_conversion.h"
 #include "engine/sequence/journal/pending_files.h"
 #include "engine/sequence/steps/frame_needs.h"
-#include "engine/sequence/steps/frame_pictures.h"
+#include "engine/sequence/steps/video_frames.h"
+
+extern "C" {
+#include <libavutil/frame.h>
+}
 
 namespace vantage {
 
 /// One video. `last` is shown again for skipped frames.
 struct SegmentWriter::Stream {
   const OutputStream* output = nullptr;
-  std::unique_ptr<VideoWriter> writer;
-  Photograph last;
+  std::shared_ptr<VideoWriter> writer;
+  LibavFrame last;
   int leading_skipped = 0;  ///< frames before the segment's first good one
 };
 
-namespace {
-
-/// Encoders use much memory on whichever thread they run, and the allocator keeps freed memory per
-/// thread: without this a run grows from segment to segment for a while.
-void return_free_memory() {
-#ifdef __GLIBC__
-  (void)::malloc_trim(0);
-#endif
-}
-
-/// Videos need at least two pixels a side: smaller pictures are repeated.
-Photograph at_least_two_a_side(Photograph picture) {
-  if (picture.width() > 1 && picture.height() > 1) {
-    return picture;
-  }
-  return std::visit(
-      [](const auto& image) {
-        std::remove_cvref_t<decltype(image)> larger(std::max(2, image.width()),
-                                                    std::max(2, image.height()), image.channels());
-        for (int y = 0; y < larger.height(); ++y) {
-          for (int x = 0; x < larger.width(); ++x) {
-            for (int c = 0; c < larger.channels(); ++c) {
-              larger.at(x, y, c) = image.at(x % image.width(), y % image.height(), c);
-            }
-          }
-        }
-        return Photograph{std::move(larger)};
-      },
-      picture.pixels);
-}
-
-}  // namespace
-
 SegmentWriter::SegmentWriter(const SequenceOptions& options, const SequenceLayout& layout,
-                             ImageExtent frame_size, Execution& execution)
-    : options_(options), layout_(layout), frame_size_(frame_size), execution_(execution) {
+                             ImageExtent frame_size, int max_waiting)
+    : options_(options), layout_(layout), frame_size_(frame_size), max_waiting_(max_waiting) {
   for (const OutputStream& output : layout.streams()) {
     if (output.as_video) {
       streams_.emplace_back().output = &output;
@@ -79,40 +46,51 @@ void SegmentWriter::begin(FrameRange frames) {
   }
 }
 
-void SegmentWriter::write(Stream& stream, const Photograph& picture, int times) {
+/// The stream's last picture.
+void SegmentWriter::write(Stream& stream, int times) {
   try {
     if (!stream.writer) {
-      const SequenceOutput output = stream.output->output;
-      const FilmFormat format = film_format_of(output, options_.film);
-      stream.writer = std::make_unique<VideoWriter>(
-          layout_.segment(*stream.output, frames_), picture.width(), picture.height(),
-          VideoEncoding{options_.frame_rate, options_.crf,
-                        output == SequenceOutput::kDepthVideo ? options_.depth_coding
-                                                              : colour_coding(format.colours),
-                        format});
+      stream.writer = std::make_shared<VideoWriter>(layout_.segment(*stream.output, frames_),
+                                                    stream.last->width, stream.last->height,
+                                                    encoding_of(options_, stream.output->output));
+      const std::lock_guard lock(mutex_);
+      std::erase_if(writers_, [](const auto& writer) { return writer.expired(); });
+      writers_.push_back(stream.writer);
     }
     for (int i = 0; i < times; ++i) {
-      stream.writer->write(picture);
+      stream.writer->add(another_reference(*stream.last));
+      while (stream.writer->frames_waiting() > max_waiting_ && encode_some()) {
+      }
     }
   } catch (const Error& error) {
     throw OutputError(error.what());
   }
 }
 
-void SegmentWriter::add(const FrameSlot& slot) {
-  // One task per video: an encoder uses one thread, so that its bytes are deterministic.
-  execution_.executor().parallel_for(static_cast<int>(streams_.size()), [&](int index) {
-    Stream& stream = streams_[static_cast<std::size_t>(index)];
-    copy_picture(slot, *stream.output, options_.match.reference, stream.last);
-    stream.last = at_least_two_a_side(std::move(stream.last));
-    write(stream, stream.last, 1 + std::exchange(stream.leading_skipped, 0));
-  });
+bool SegmentWriter::encode_some() {
+  std::vector<std::shared_ptr<VideoWriter>> writers;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const std::weak_ptr<VideoWriter>& writer : writers_) {
+      if (auto one = writer.lock()) {
+        writers.push_back(std::move(one));
+      }
+    }
+  }
+  return std::ranges::any_of(writers, [](const auto& writer) { return writer->encode_some(); });
+}
+
+void SegmentWriter::add(FrameSlot& slot) {
+  for (std::size_t i = 0; i < streams_.size(); ++i) {
+    streams_[i].last = std::move(slot.video_frames[i]);
+    write(streams_[i], 1 + std::exchange(streams_[i].leading_skipped, 0));
+  }
 }
 
 void SegmentWriter::add_skipped() {
   for (Stream& stream : streams_) {
     if (stream.writer) {
-      write(stream, stream.last, 1);
+      write(stream, 1);
     } else {
       ++stream.leading_skipped;
     }
@@ -128,40 +106,42 @@ Photograph SegmentWriter::black_picture(const OutputStream& output) const {
   if (output.output == SequenceOutput::kDepthVideo) {
     Image<std::uint16_t> unknown(size.width_px, size.height_px);
     unknown.fill(0);
-    return at_least_two_a_side(Photograph{std::move(unknown)});
+    return Photograph{std::move(unknown)};
   }
   Photograph black{Image<std::uint8_t>(size.width_px, size.height_px)};
   std::get<Image<std::uint8_t>>(black.pixels).fill(0);
   if (output.output != SequenceOutput::kStereo) {
-    return at_least_two_a_side(std::move(black));
+    return black;
   }
   Photograph packed;
   show_stereo(black, black, options_.stereo_packing, packed);
-  return at_least_two_a_side(std::move(packed));
+  return packed;
 }
 
-std::vector<std::unique_ptr<VideoWriter>> SegmentWriter::end(FrameRange frames) {
-  std::vector<std::unique_ptr<VideoWriter>> videos(streams_.size());
+std::vector<std::shared_ptr<VideoWriter>> SegmentWriter::end(FrameRange frames) {
+  std::vector<std::shared_ptr<VideoWriter>> videos;
   // The streams have the same frames: all have pictures, or none has.
   if (!streams_.front().writer && streams_.front().leading_skipped == 0) {
-    return {};
+    return videos;
   }
-  execution_.executor().parallel_for(static_cast<int>(streams_.size()), [&](int index) {
-    Stream& stream = streams_[static_cast<std::size_t>(index)];
+  for (Stream& stream : streams_) {
     if (!stream.writer) {
-      write(stream, black_picture(*stream.output), std::exchange(stream.leading_skipped, 0));
+      const Photograph black = black_picture(*stream.output);
+      const VideoEncoding encoding = encoding_of(options_, stream.output->output);
+      stream.last = make_frame_conversion(encoding.coding, black.width(), black.height(),
+                                          encoding.format.colours)(black);
+      write(stream, std::exchange(stream.leading_skipped, 0));
     }
     try {
-      stream.writer->end_encoding();
+      stream.writer->end();
       if (frames != frames_) {
         stream.writer->rename(layout_.segment(*stream.output, frames));
       }
     } catch (const Error& error) {
       throw OutputError(error.what());
     }
-    videos[static_cast<std::size_t>(index)] = std::move(stream.writer);
-  });
-  return_free_memory();
+    videos.push_back(std::move(stream.writer));
+  }
   return videos;
 }
 

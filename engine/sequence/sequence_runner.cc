@@ -17,6 +17,8 @@
 #include "engine/sequence/journal/leftovers.h"
 #include "engine/sequence/run_totals.h"
 #include "engine/sequence/segment_writer.h"
+#include "engine/sequence/steps/timed_part.h"
+#include "engine/sequence/steps/video_frames.h"
 
 namespace vantage {
 namespace {
@@ -45,8 +47,10 @@ class Run final : private FrameFlow {
       : FrameFlow(options, layout, run, std::move(work), true, execution),
         options_(options),
         threads_(execution.executor().thread_count()),
+        execution_(execution),
         stored_(std::move(stored)),
-        segments_(options, layout, run.frame_size.value_or(ImageExtent()), execution),
+        segments_(options, layout, run.frame_size.value_or(ImageExtent()),
+                  run.is_live ? 0 : max_frames_waiting(threads_)),
         queue_(
             journal, [this](int frames, double cells) { tell_progress(frames, cells); },
             accounts().of(deliver_step())) {}
@@ -65,6 +69,7 @@ class Run final : private FrameFlow {
       // noticed.
       report_.interrupted = run().stop != nullptr && run().stop->load();
     }
+    encode_rest();
     queue_.finish();
     // Not counted: frames that exist only in the abandoned videos of an unfinished chunk.
     report_.frames -= frames_of_segment_;
@@ -79,6 +84,33 @@ class Run final : private FrameFlow {
   void begin(FrameSlot& slot) override {
     const auto known = stored_.find(slot.frame);
     slot.stored = known == stored_.end() ? nullptr : known->second;
+  }
+
+  void take(StepPhase phase, FrameSlot& slot) override {
+    FrameFlow::take(phase, slot);
+    if (phase == StepPhase::kEncode && layout().has_videos()) {
+      encode_others(slot);
+    }
+  }
+
+  /// Beside its own results a frame encodes what those before it have left to the videos: twice, as
+  /// encoders hold frames back and are asked for these at the end of their group.
+  void encode_others(FrameSlot& slot) {
+    constexpr int kTimes = 2;
+    const StepEntry step = write_step();
+    const scheduler::ProcessorCharge charge(accounts().of(step));
+    const TimedPart part(slot, step.name);
+    for (int i = 0; i < kTimes && segments_.encode_some(); ++i) {
+    }
+  }
+
+  /// What the last frames have left.
+  void encode_rest() {
+    const scheduler::ProcessorCharge charge(accounts().of(write_step()));
+    execution_.executor().parallel_for(threads_, [&](int /*task*/) {
+      while (segments_.encode_some()) {
+      }
+    });
   }
 
   void write(std::unique_ptr<FrameSlot>& slot) override { write_frame(*slot); }
@@ -242,6 +274,7 @@ class Run final : private FrameFlow {
 
   const SequenceOptions& options_;
   int threads_;
+  Execution& execution_;
   std::map<int, const FrameRecord*> stored_;
   // The following members, up to the queue, are used only by the writing step.
   SegmentWriter segments_;

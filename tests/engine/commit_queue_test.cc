@@ -26,7 +26,7 @@ class CommitQueueTest : public testing::Test {
     Photograph picture{Image<std::uint8_t>(kSide, kSide)};
     std::get<Image<std::uint8_t>>(picture.pixels).fill(9);
     writer->write(picture);
-    writer->end_encoding();
+    writer->end();
     return writer;
   }
   [[nodiscard]] std::vector<int> journalled() const {

@@ -152,7 +152,8 @@ TEST(FilmFormats, CodesAreThoseOfTheStandard) {
   const FrameConversion convert =
       make_frame_conversion(VideoCoding::kHevcColours_10, kWidth, kHeight, kPq.colours);
   const Photograph picture = blocks<std::uint16_t>(1);
-  const AVFrame& frame = convert(picture);
+  const LibavFrame converted = convert(picture);
+  const AVFrame& frame = *converted;
   const auto& image = std::get<Image<std::uint16_t>>(picture.pixels);
   const auto code = [&](int plane, int x, int y) {
     return reinterpret_cast<const std::uint16_t*>(frame.data[plane] + y * frame.linesize[plane])[x];

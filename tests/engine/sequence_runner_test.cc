@@ -421,6 +421,28 @@ TEST_F(SequenceRunnerTest, SkippedFramesOfAVideoShowANeighbour) {
   EXPECT_LT(black.at(3, 3), 3);
 }
 
+/// A group has 50 frames, whatever runs them; here its first frame repeats the last one before it.
+TEST_F(SequenceRunnerTest, VideosOfSeveralGroupsAreTheSameHoweverTheyAreMade) {
+  options_.save = {SequenceOutput::kPreview};
+  options_.video = options_.save;
+  options_.chunk_frames = 60;
+  constexpr int kFrames = 74;
+  const auto make = [&](const std::string& name, const Way& way) {
+    MadeUpPairs pairs(kFrames);
+    pairs.bad_to_decode = {50};
+    run(pairs, folder(name), way);
+    return files(folder(name));
+  };
+  const auto expected =
+      make("a", {.execution = {.threads = 1}, .in_flight = 1, .keep_going = true});
+  EXPECT_EQ(VideoReader(folder("a") / "preview.mp4").frame_count(), kFrames);
+  EXPECT_EQ(make("b", {.execution = {.threads = 3}, .in_flight = 9, .keep_going = true}), expected);
+  EXPECT_EQ(make("c", {.execution = {.threads = 2, .executor = scheduler::ExecutorKind::kOpenMp},
+                       .in_flight = 3,
+                       .keep_going = true}),
+            expected);
+}
+
 TEST_F(SequenceRunnerTest, PartsAndInterruptionsLeaveNoTrace) {
   options_.save = {SequenceOutput::kDisparity, SequenceOutput::kRightDisparity,
                    SequenceOutput::kPreview, SequenceOutput::kViews};

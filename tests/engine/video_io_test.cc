@@ -258,7 +258,7 @@ TEST(VideoIo, FinishOnlyNamesWhatHasBeenEncodedBefore) {
   for (int i = 0; i < 60; ++i) {
     writer.write(test_frame(32, 32, i));
   }
-  writer.end_encoding();
+  writer.end();
   EXPECT_EQ(folder.entries(), 2U);
   EXPECT_FALSE(std::filesystem::exists(folder / "b.mp4"));
   writer.finish();

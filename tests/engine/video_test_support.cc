@@ -109,11 +109,11 @@ void put_x264_video(const std::filesystem::path& path, int frames, FrameRate rat
   require(avformat_write_header(output.get(), nullptr));
   const LibavPacket packet = make_libav_packet();
   for (int i = 0; i <= frames; ++i) {
-    AVFrame* frame = i < frames ? &convert(numbered_frame(64, 48, i)) : nullptr;
+    const LibavFrame frame = i < frames ? convert(numbered_frame(64, 48, i)) : nullptr;
     if (frame != nullptr) {
       frame->pts = i;
     }
-    require(avcodec_send_frame(encoder.get(), frame));
+    require(avcodec_send_frame(encoder.get(), frame.get()));
     while (avcodec_receive_packet(encoder.get(), packet.get()) >= 0) {
       packet->duration = 1;
       av_packet_rescale_ts(packet.get(), unit_of(rate), stream->time_base);

@@ -104,6 +104,22 @@ LibavFrame make_libav_frame() {
   return frame;
 }
 
+LibavFrame another_reference(const AVFrame& frame) {
+  LibavFrame reference(av_frame_clone(&frame));
+  if (reference == nullptr) {
+    throw std::bad_alloc();
+  }
+  return reference;
+}
+
+std::size_t bytes_of(const AVFrame& frame) {
+  std::size_t bytes = 0;
+  for (const AVBufferRef* buffer : frame.buf) {
+    bytes += buffer == nullptr ? 0 : buffer->size;
+  }
+  return bytes;
+}
+
 LibavPacket make_libav_packet() {
   LibavPacket packet(libav().av_packet_alloc());
   if (packet == nullptr) {

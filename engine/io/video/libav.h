@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -42,6 +43,10 @@ using LibavScaler = std::unique_ptr<SwsContext, LibavFree>;
 /// Empty objects. Throw std::bad_alloc.
 LibavFrame make_libav_frame();
 LibavPacket make_libav_packet();
+/// To the same pixels. Throws std::bad_alloc.
+LibavFrame another_reference(const AVFrame& frame);
+/// Memory of its pixels.
+std::size_t bytes_of(const AVFrame& frame);
 
 /// Message for a negative return value of an FFmpeg function, in lower case.
 std::string libav_message(int error);

@@ -12,16 +12,28 @@ namespace {
 
 /// In the order of VideoCoding.
 ///
-/// The preset of x264: photographs of 1226×370 pixels at factor 18 take 23 ms a frame (Zen 4, one
-/// thread) with "veryfast". "superfast" takes 14 ms and a tenth more bytes, "faster", "fast" and
-/// "medium" take 35, 48 and 63 ms with no fewer bytes. No tuning: views are of any kind.
+/// x264: "veryfast" with half of its search for motion, where views of photographs take half the
+/// time for 3 to 8 % more bytes of the same PSNR (docs/SEQUENCES.md has the table). Its lookahead
+/// stays: "superfast" has none, and takes 10 to 50 % more bytes. No tuning: views are of any kind.
 constexpr std::array kCodings = {
     VideoCodingTraits{.name = "h264",
                       .extension = "mp4",
                       .encoder = "libx264",
                       .pixel_format = AV_PIX_FMT_YUV420P,
                       .has_crf = true,
-                      .options = "preset=veryfast,x264-params=cpu-independent=1:stitchable=1"},
+                      .group_frames = 50,
+                      .options = "preset=veryfast,x264-params=subme=1:me=dia:partitions=none:cpu-"
+                                 "independent=1:stitchable=1"},
+    // Where FFV1 takes 93 ms for a depth picture of 1920×1080, this takes 7 ms, for 19 % more
+    // bytes.
+    VideoCodingTraits{.name = "ffvhuff-16",
+                      .extension = "mkv",
+                      .bits = 16,
+                      .encoder = "ffvhuff",
+                      .pixel_format = AV_PIX_FMT_GRAY16LE,
+                      .has_full_range = true,
+                      .has_odd_sizes = true,
+                      .options = "pred=plane"},
     VideoCodingTraits{.name = "ffv1-16",
                       .extension = "mkv",
                       .bits = 16,
@@ -45,6 +57,7 @@ constexpr std::array kCodings = {
                       .pixel_format = AV_PIX_FMT_GRAY10LE,
                       .has_full_range = true,
                       .has_crf = true,
+                      .group_frames = 50,
                       .options = "preset=fast,x265-params=log-level=none:pools=none:"
                                  "frame-threads=1:bframes=0:open-gop=0:info=0:range=full"},
     VideoCodingTraits{.name = "prores-10",
@@ -59,6 +72,7 @@ constexpr std::array kCodings = {
                       .encoder = "libx265",
                       .pixel_format = AV_PIX_FMT_YUV420P10LE,
                       .has_crf = true,
+                      .group_frames = 50,
                       .options = "preset=superfast,x265-params=log-level=none:pools=none:"
                                  "frame-threads=1:bframes=0:open-gop=0:info=0"}};
 

@@ -9,6 +9,7 @@ namespace vantage {
 /// How videos are coded, and in which container.
 enum class VideoCoding {
   kH264,           ///< colours, yuv420p, MP4
+  kHuffYuv_16,     ///< grey, 16 bits, lossless, Matroska: FFmpeg's variant of HuffYUV
   kFfv1_16,        ///< grey, 16 bits, lossless, Matroska
   kFfv1_10,        ///< grey, 10 bits, lossless, Matroska
   kHevc_10,        ///< grey, 10 bits, lossy, MP4
@@ -18,7 +19,7 @@ enum class VideoCoding {
 
 /// What a coding is: a line of the table in the .cc file, where another one is added.
 struct VideoCodingTraits {
-  std::string_view name;       ///< on the command line: ffv1-16, ffv1-10, hevc-10, prores-10
+  std::string_view name;       ///< on the command line: ffvhuff-16, ffv1-16, hevc-10, …
   std::string_view extension;  ///< of the files, without the dot
   int bits = 8;
   const char* encoder = "";     ///< FFmpeg's name
@@ -26,6 +27,8 @@ struct VideoCodingTraits {
   bool has_full_range = false;  ///< else 16 to 235, with 8 bits
   bool has_odd_sizes = false;   ///< and every frame can be decoded alone
   bool has_crf = false;
+  /// Frames that are encoded together, from the first one on, and decoded without others.
+  int group_frames = 1;
   /// Options of the encoder, as KEY=VALUE separated by commas. They choose the same algorithm on
   /// every processor, one thread, and headers that do not depend on the pictures. So the bytes
   /// depend on the frames only, and segments can be joined.

@@ -29,6 +29,7 @@ bool can_decode_frames_at_once(AVCodecID codec) {
     case AV_CODEC_ID_AV1:
     case AV_CODEC_ID_PRORES:
     case AV_CODEC_ID_FFV1:
+    case AV_CODEC_ID_FFVHUFF:
     case AV_CODEC_ID_MJPEG:
       return true;
     default:

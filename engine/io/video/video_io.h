@@ -88,8 +88,11 @@ struct VideoEncoding {
 
 /// Writes an MP4 (H.264, yuv420p, for browsers), or another coding. All but FFV1 have even sizes
 /// only: an odd last column or row is repeated once. The file appears under its name at finish();
-/// without it nothing is left. One thread encodes, so that the bytes depend on the frames only.
-/// Thread rule: one thread at a time.
+/// without it nothing is left. Each VideoCodingTraits::group_frames frames are encoded by an
+/// encoder of their own, on one thread at a time, so the bytes depend on the frames only, and
+/// groups can be encoded side by side.
+/// Thread rule: one thread at a time; encode_some() and frames_waiting() by any. Different writers
+/// are independent.
 class VideoWriter {
  public:
   /// `path` ends in .mp4, or what else the coding's files end in; width and height in 2..16384
@@ -98,20 +101,30 @@ class VideoWriter {
               const VideoEncoding& encoding);
   ~VideoWriter();
 
-  /// Appends a frame: 8-bit, 16-bit or float (0..1, clamped), 1, 3 or 4 channels (alpha is
-  /// dropped); of a grey coding 16-bit with one channel. Throws Error when its size is not the one
-  /// given at construction, or the disk is full.
+  /// Appends a frame and encodes it: 8-bit, 16-bit or float (0..1, clamped), 1, 3 or 4 channels
+  /// (alpha is dropped); of a grey coding 16-bit with one channel. Throws Error when its size is
+  /// not the one given at construction, or the disk is full.
   void write(const Photograph& frame);
 
-  /// Encodes the delayed frames and releases the encoder's memory: no frame may follow. finish()
-  /// then only waits for the disk.
-  void end_encoding();
+  /// Appends a frame of make_frame_conversion(), whose pixels must not change any more; it waits
+  /// until some thread encodes it. Throws the Error of an earlier one.
+  void add(LibavFrame frame);
+  /// Encodes a frame, or goes on with those that an encoder holds back, of the first group that no
+  /// other thread works on; false where there is none. An encoder needs more memory than the frames
+  /// that wait: another one is opened when a third of a group waits. add() and finish() throw its
+  /// errors.
+  bool encode_some();
+  [[nodiscard]] int frames_waiting() const;
+
+  /// No frame may follow. Throws Error when there was none.
+  void end();
 
   /// The file will have another name of the same folder. Throws Error.
   void rename(const std::filesystem::path& path);
 
-  /// Ends the file, checks that it can be read as a video with all written frames, and gives it its
-  /// name. Call it once, after at least one frame. Throws Error.
+  /// Encodes what waits, or waits for who does, ends the file, checks that it can be read as a
+  /// video with all frames, and gives it its name. Call it once, after at least one frame. Throws
+  /// Error.
   void finish();
 
  private:

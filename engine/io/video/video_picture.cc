@@ -65,14 +65,6 @@ LossyCoding coding_of_frame(const AVFrame& frame, const std::string& lossy_codec
   return coding;
 }
 
-LibavFrame another_reference(const AVFrame& frame) {
-  LibavFrame reference(av_frame_clone(&frame));
-  if (reference == nullptr) {
-    throw std::bad_alloc();
-  }
-  return reference;
-}
-
 /// `frame` with the lines of its second field interpolated, in space and from its neighbours, which
 /// may be null. Each picture has a chain of its own, so it is the same wherever decoding began.
 LibavFrame deinterlaced(const AVFrame* before, const AVFrame& frame, const AVFrame* after,
@@ -142,13 +134,7 @@ void VideoPicture::set_neighbours(const VideoPicture& before, const VideoPicture
   after_ = after.is_empty() ? nullptr : another_reference(*after.frame_);
 }
 
-std::size_t VideoPicture::bytes() const {
-  std::size_t bytes = 0;
-  for (int plane = 0; !is_empty() && plane < AV_NUM_DATA_POINTERS; ++plane) {
-    bytes += frame_->buf[plane] == nullptr ? 0 : frame_->buf[plane]->size;
-  }
-  return bytes;
-}
+std::size_t VideoPicture::bytes() const { return is_empty() ? 0 : bytes_of(*frame_); }
 
 void VideoPicture::convert(Photograph& photograph) {
   using Deinterlacing = PictureHandling::Deinterlacing;

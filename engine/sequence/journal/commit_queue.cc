@@ -41,7 +41,7 @@ void flush_together(std::size_t count, const Flush& flush) {
 }
 
 /// Names the videos durably, because the next journal records refer to them.
-void finish_videos(const std::vector<std::unique_ptr<VideoWriter>>& videos) {
+void finish_videos(const std::vector<std::shared_ptr<VideoWriter>>& videos) {
   std::vector<std::exception_ptr> errors(videos.size());
   flush_together(videos.size(), [&](std::size_t i) {
     try {

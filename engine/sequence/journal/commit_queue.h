@@ -27,7 +27,7 @@ class DeliveryError : public OutputError {
 /// Results that become visible together, and their journal records.
 struct Delivery {
   PendingFiles files;
-  std::vector<std::unique_ptr<VideoWriter>> videos;  ///< with all their frames written
+  std::vector<std::shared_ptr<VideoWriter>> videos;  ///< with all their frames
   std::vector<JournalRecord> records;
   /// Record of `videos`, which lie below `folder`; their content is known once they are finished.
   std::optional<SegmentRecord> segment = {};

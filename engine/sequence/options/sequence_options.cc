@@ -174,7 +174,8 @@ void check_formats(const SequenceOptions& options) {
 
 void check_films(const SequenceOptions& options) {
   if (!is_grey(options.depth_coding)) {
-    throw UsageError("depth-codec is h264, expected ffv1-16, ffv1-10, hevc-10 or prores-10");
+    throw UsageError(
+        "depth-codec is h264, expected ffvhuff-16, ffv1-16, ffv1-10, hevc-10 or prores-10");
   }
   const PreviewRange given = options.depth_scale.given;
   if (!(std::isfinite(given.min_px) && std::isfinite(given.max_px) &&

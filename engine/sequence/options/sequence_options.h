@@ -135,7 +135,7 @@ struct SequenceOptions {
   /// none is found; not with TemporalOptions::uses_past().
   bool search_range_per_shot = false;
   DepthVideoScale depth_scale;                       ///< of kDepthVideo
-  VideoCoding depth_coding = VideoCoding::kFfv1_16;  ///< of kDepthVideo, a grey one
+  VideoCoding depth_coding = VideoCoding::kHuffYuv_16;  ///< of kDepthVideo, a grey one
   TemporalOptions temporal;
   /// Extension of the disparity, confidence and depth resolution files without the dot, one of
   /// map_formats() that can hold them: all except png can hold the last two.

@@ -56,8 +56,9 @@ void paint_depth(ImageView<const float> map_px, PreviewRange range, Image<std::u
     for (int x = 0; x < map_px.width(); ++x) {
       const float d = disparities[x];
       const float share = std::clamp((d - range.min_px) / span, 0.0F, 1.0F);
-      levels[x] = std::isfinite(d) ? static_cast<std::uint16_t>(1 + std::lround(share * kLevels))
-                                   : std::uint16_t{0};
+      levels[x] = std::isfinite(d)
+                      ? static_cast<std::uint16_t>(1 + static_cast<int>(share * kLevels + 0.5F))
+                      : std::uint16_t{0};
     }
   }
 }

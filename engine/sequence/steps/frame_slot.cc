@@ -18,6 +18,7 @@ void FrameSlot::begin_frame() {
   view_poses.clear();
   comfort.reset();
   disparities.reset();
+  video_frames.clear();
   files.discard();  // left by an abandoned frame
   file_records.clear();
   times.clear();

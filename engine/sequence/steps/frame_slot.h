@@ -12,6 +12,7 @@
 #include "engine/comfort/frame_comfort.h"
 #include "engine/image/disparity_range.h"
 #include "engine/image/photograph.h"
+#include "engine/io/video/libav.h"
 #include "engine/matching/range_check.h"
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
@@ -69,7 +70,8 @@ struct FrameSlot {
   std::optional<FrameComfort> comfort;  ///< if it is wanted
   /// Of the reference's map, with kDepthResolution.
   std::optional<DisparitiesAndScale> disparities;
-  std::vector<std::uint8_t> encoded;  ///< the file being written
+  std::vector<LibavFrame> video_frames;  ///< of the videos in the order of the layout
+  std::vector<std::uint8_t> encoded;     ///< the file being written
   PendingFiles files;
   std::vector<FileRecord> file_records;  ///< of `files`
   std::vector<StageTime> times;          ///< of all steps except matching

@@ -21,6 +21,7 @@
   STEP(preview_step)              \
   STEP(depth_picture_step)        \
   STEP(depth_resolution_step)     \
+  STEP(video_frames_step)         \
   STEP(encode_step)               \
   STEP(write_step)                \
   STEP(deliver_step)

@@ -74,14 +74,14 @@ void StreamedVideoWriter::write(const Photograph& frame) {
                                                                 : VideoCoding::kH264,
                                        frame.width(), frame.height(), film_.colours);
     }
-    const AVFrame& converted = convert_(frame);
+    const LibavFrame converted = convert_(frame);
     if (format_ == StreamFormat::kY4m) {
       if (!has_header_) {
-        put_header(converted, is_grey);
+        put_header(*converted, is_grey);
       }
       put("FRAME\n", 6);
     }
-    put_planes(converted);
+    put_planes(*converted);
   }
   if (std::fflush(stream_) != 0) {
     throw Error(fmt::format("cannot write to standard output: {}", std::strerror(errno)));

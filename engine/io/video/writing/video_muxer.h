@@ -34,6 +34,7 @@ class VideoMuxer {
   /// afterwards. Packets of a stream come in decoding order, those of several streams roughly by
   /// their times. Throws Error when the disk is full.
   void write(AVPacket& packet, int stream, AVRational time_unit);
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// The file will have another name of the same folder.
   void rename(const std::filesystem::path& path);
   /// Ends the file, checks that it can be read as a video of `frames` frames, and gives it its

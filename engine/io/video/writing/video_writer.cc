@@ -1,14 +1,22 @@
 #include <fmt/format.h>
+#include <malloc.h>
 
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
 #include <new>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/video/libav_functions.h"
 #include "engine/io/video/video_io.h"
 #include "engine/io/video/writing/frame_conversion.h"
+#include "engine/io/video/writing/picture_group.h"
 #include "engine/io/video/writing/video_encoder.h"
 #include "engine/io/video/writing/video_muxer.h"
 
@@ -43,6 +51,14 @@ void check_video_settings(const std::filesystem::path& path, int width, int heig
   }
 }
 
+/// Encoders use much memory on whichever thread they run, and the allocator keeps freed memory per
+/// thread: without this a run grows from group to group for a while.
+void return_free_memory() {
+#ifdef __GLIBC__
+  (void)::malloc_trim(0);
+#endif
+}
+
 AVRational time_unit_of(FrameRate rate) {
   return {static_cast<int>(rate.denominator), static_cast<int>(rate.numerator)};
 }
@@ -50,24 +66,36 @@ AVRational time_unit_of(FrameRate rate) {
 }  // namespace
 
 struct VideoWriter::State {
+  /// One that waits or is encoded.
+  struct Group {
+    PictureGroup pictures;
+    bool is_at_work = false;
+  };
+
+  VideoEncoding encoding;
   int width;
   int height;
   AVRational time_unit;
-  FrameConversion convert;  ///< until encoding has ended
-  LibavCodec encoder;
-  LibavPacket packet = make_libav_packet();
+  FrameConversion convert;  ///< made for the first photograph
+  int decoding_lead = 0;    ///< frames by which decoding may precede presentation
+  std::mutex mutex;
+  std::condition_variable changed;
+  // Guarded by it.
   VideoMuxer file;
-  int frames_written = 0;
+  std::deque<Group> groups;  ///< in order, those that are not in the file
+  std::vector<LibavCodec> idle_encoders;
+  int frames = 0;
+  int packets_stored = 0;
+  std::exception_ptr error;
 
   State(const std::filesystem::path& path, int frame_width, int frame_height,
-        const VideoEncoding& encoding)
-      : width(frame_width),
+        const VideoEncoding& video_encoding)
+      : encoding(video_encoding),
+        width(frame_width),
         height(frame_height),
         time_unit(time_unit_of(encoding.rate)),
-        convert(make_frame_conversion(encoding.coding, frame_width, frame_height,
-                                      encoding.format.colours)),
         file(path) {
-    open_encoder(encoding);
+    LibavCodec encoder = open_encoder();
     AVCodecParameters* parameters = libav().avcodec_parameters_alloc();
     if (parameters == nullptr ||
         libav().avcodec_parameters_from_context(parameters, encoder.get()) < 0) {
@@ -77,17 +105,34 @@ struct VideoWriter::State {
     file.add_stream(*parameters, time_unit);
     libav().avcodec_parameters_free(&parameters);
     file.begin();
+    decoding_lead = encoder->has_b_frames;
+    idle_encoders.push_back(std::move(encoder));
   }
 
-  void open_encoder(const VideoEncoding& encoding);
-  /// Encodes a frame, or the delayed ones when it is null, and stores the packets that are ready.
-  void encode(const AVFrame* frame);
+  [[nodiscard]] int group_frames() const { return traits_of(encoding.coding).group_frames; }
+  LibavCodec open_encoder();
+  LibavCodec take_encoder();
+  void require_no_error() const {
+    if (error) {
+      std::rethrow_exception(error);
+    }
+  }
+  [[nodiscard]] int frames_waiting() const {
+    int frames_left = 0;
+    for (const Group& group : groups) {
+      frames_left += group.pictures.frames_waiting();
+    }
+    return frames_left;
+  }
+  void add(LibavFrame frame);
+  void encode(Group& group, std::unique_lock<std::mutex>& lock);
+  void store_coded_groups();
 };
 
-void VideoWriter::State::open_encoder(const VideoEncoding& encoding) {
+LibavCodec VideoWriter::State::open_encoder() {
   EncoderSetup setup(encoding, width, height);
   int result = 0;
-  encoder = setup.open(result);
+  LibavCodec encoder = setup.open(result);
   if (result == AVERROR_ENCODER_NOT_FOUND) {
     file.fail(fmt::format("this FFmpeg was built without the encoder {}", setup.name()));
   }
@@ -96,20 +141,80 @@ void VideoWriter::State::open_encoder(const VideoEncoding& encoding) {
                           setup.name(), width, height, to_string(encoding.rate),
                           libav_message(result)));
   }
+  return encoder;
 }
 
-void VideoWriter::State::encode(const AVFrame* frame) {
-  int result = libav().avcodec_send_frame(encoder.get(), frame);
-  while (result >= 0) {
-    result = libav().avcodec_receive_packet(encoder.get(), packet.get());
-    if (result >= 0) {
-      packet->duration = 1;
-      file.write(*packet, 0, time_unit);
+LibavCodec VideoWriter::State::take_encoder() {
+  {
+    const std::lock_guard lock(mutex);
+    if (!idle_encoders.empty()) {
+      LibavCodec encoder = std::move(idle_encoders.back());
+      idle_encoders.pop_back();
+      return encoder;
     }
   }
-  if (result != AVERROR(EAGAIN) && result != AVERROR_EOF) {
-    file.fail(
-        fmt::format("frame {} cannot be encoded ({})", frames_written, libav_message(result)));
+  return open_encoder();
+}
+
+void VideoWriter::State::add(LibavFrame frame) {
+  const std::lock_guard lock(mutex);
+  require_no_error();
+  if (groups.empty() || groups.back().pictures.is_closed()) {
+    groups.push_back({PictureGroup(frames)});
+  }
+  PictureGroup& group = groups.back().pictures;
+  group.add(std::move(frame));
+  ++frames;
+  if (group.frames() == group_frames()) {
+    group.close();
+  }
+}
+
+/// `lock`: of the mutex, which is free while the encoder works.
+void VideoWriter::State::encode(Group& group, std::unique_lock<std::mutex>& lock) {
+  group.is_at_work = true;
+  LibavFrame frame = group.pictures.take_frame();
+  lock.unlock();
+  std::exception_ptr problem;
+  try {
+    group.pictures.encode(frame.get(), [this] { return take_encoder(); });
+    frame.reset();
+  } catch (const Error& bad) {
+    problem = std::make_exception_ptr(
+        Error(fmt::format("cannot write {}: {}", file.path().string(), bad.what())));
+  } catch (...) {
+    problem = std::current_exception();
+  }
+  lock.lock();
+  group.is_at_work = false;
+  try {
+    if (problem) {
+      std::rethrow_exception(problem);
+    }
+    group.pictures.note_packets();
+    if (group.pictures.is_coded()) {
+      LibavCodec encoder = group.pictures.take_encoder();
+      if (group_frames() == 1) {
+        idle_encoders.push_back(std::move(encoder));
+      } else {
+        encoder.reset();
+        return_free_memory();
+      }
+      store_coded_groups();
+    }
+  } catch (...) {
+    error = std::current_exception();
+  }
+  changed.notify_all();
+}
+
+/// Those that no earlier one is missing for.
+void VideoWriter::State::store_coded_groups() {
+  for (; !groups.empty() && groups.front().pictures.is_coded(); groups.pop_front()) {
+    for (const LibavPacket& packet : groups.front().pictures.packets()) {
+      packet->dts = packets_stored++ - decoding_lead;
+      file.write(*packet, 0, time_unit);
+    }
   }
 }
 
@@ -124,33 +229,65 @@ VideoWriter::~VideoWriter() = default;
 void VideoWriter::write(const Photograph& frame) {
   State& state = *state_;
   if (frame.width() != state.width || frame.height() != state.height) {
-    state.file.fail(fmt::format("frame {} is {}x{}, expected {}x{}", state.frames_written,
-                                frame.width(), frame.height(), state.width, state.height));
+    state.file.fail(fmt::format("frame {} is {}x{}, expected {}x{}", state.frames, frame.width(),
+                                frame.height(), state.width, state.height));
   }
-  AVFrame& converted = state.convert(frame);
-  converted.pts = state.frames_written;
-  state.encode(&converted);
-  ++state.frames_written;
+  if (!state.convert) {
+    state.convert = make_frame_conversion(state.encoding.coding, state.width, state.height,
+                                          state.encoding.format.colours);
+  }
+  add(state.convert(frame));
+  while (encode_some()) {
+  }
+  const std::lock_guard lock(state.mutex);
+  state.require_no_error();
 }
 
-void VideoWriter::end_encoding() {
-  State& state = *state_;
-  if (state.frames_written == 0) {
-    state.file.fail("the video has no frames");
+void VideoWriter::add(LibavFrame frame) { state_->add(std::move(frame)); }
+
+bool VideoWriter::encode_some() {
+  std::unique_lock lock(state_->mutex);
+  const bool may_open = state_->frames_waiting() > std::max(2, state_->group_frames() / 3);
+  const auto group = std::ranges::find_if(state_->groups, [&](const State::Group& one) {
+    return !one.is_at_work && one.pictures.has_work() &&
+           (one.pictures.is_open() || may_open || &one == &state_->groups.front());
+  });
+  if (state_->error || group == state_->groups.end()) {
+    return false;
   }
-  if (state.encoder) {
-    state.encode(nullptr);
-    state.encoder.reset();
-    state.convert = nullptr;
+  state_->encode(*group, lock);
+  return true;
+}
+
+int VideoWriter::frames_waiting() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->frames_waiting();
+}
+
+void VideoWriter::end() {
+  const std::lock_guard lock(state_->mutex);
+  state_->require_no_error();
+  if (state_->frames == 0) {
+    state_->file.fail("the video has no frames");
+  }
+  if (!state_->groups.empty()) {
+    state_->groups.back().pictures.close();
   }
 }
 
-void VideoWriter::rename(const std::filesystem::path& path) { state_->file.rename(path); }
+void VideoWriter::rename(const std::filesystem::path& path) {
+  const std::lock_guard lock(state_->mutex);
+  state_->file.rename(path);
+}
 
 void VideoWriter::finish() {
-  end_encoding();
-  State& state = *state_;
-  state.file.finish(state.frames_written);
+  end();
+  while (encode_some()) {
+  }
+  std::unique_lock lock(state_->mutex);
+  state_->changed.wait(lock, [&] { return state_->groups.empty() || state_->error; });
+  state_->require_no_error();
+  state_->file.finish(state_->frames);
 }
 
 }  // namespace vantage
