@@ -129,15 +129,6 @@ kernels::ColourFactors make_colour_factors(const std::array<double, 2>& weights,
           .blue_of_blue = static_cast<float>(chroma * 2 * (1 - blue))};
 }
 
-/// Row y of three 16-bit planes.
-kernels::LumaChromaRow row_of(const AVFrame& yuv, int y) {
-  const auto row = [&](int plane) {
-    return reinterpret_cast<const std::uint16_t*>(yuv.data[plane] +
-                                                  std::ptrdiff_t{y} * yuv.linesize[plane]);
-  };
-  return {row(0), row(1), row(2), yuv.width};
-}
-
 }  // namespace
 
 void FrameToPhotograph::prepare(const AVFrame& frame) {
@@ -153,6 +144,7 @@ void FrameToPhotograph::prepare(const AVFrame& frame) {
       frame.color_range == AVCOL_RANGE_JPEG || without_range(frame.format) != frame.format;
   grey_ = format.nb_components == 1 && (format.flags & AV_PIX_FMT_FLAG_PAL) == 0;
   wide_ = bits > 8;
+  has_chroma_ = is_luma_and_chroma(format);
   levels_.clear();
   yuv_.reset();
   scaler_.reset();
@@ -164,11 +156,13 @@ void FrameToPhotograph::prepare(const AVFrame& frame) {
   if (sws_isSupportedInput(static_cast<AVPixelFormat>(frame.format)) == 0) {
     throw Error(fmt::format("its pixel format {} is not supported", format.name));
   }
-  if (is_luma_and_chroma(format)) {
+  if (has_chroma_) {
     // libswscale only interpolates chroma, because its RGB wraps around far outside the range, and
     // its RGB of more than 8 bits is up to one 8-bit level too dark.
     factors_ = make_colour_factors(luma_weights(frame.colorspace, frame.height), full_range, bits,
                                    wide_ ? 65535 : 255);
+  }
+  if (has_chroma_ && !ChromaUpsampler::serves(frame)) {
     yuv_ = make_picture(frame.width, frame.height, AV_PIX_FMT_YUV444P16);
     scaler_ = make_scaler({.width = frame.width,
                            .height = frame.height,
@@ -177,7 +171,7 @@ void FrameToPhotograph::prepare(const AVFrame& frame) {
                            .source_full_range = false,
                            .target_full_range = false,
                            .source_chroma = chroma_position(frame.chroma_location, format)});
-  } else {
+  } else if (!has_chroma_) {
     scaler_ = make_scaler({.width = frame.width,
                            .height = frame.height,
                            .source_format = frame.format,
@@ -190,10 +184,30 @@ void FrameToPhotograph::prepare(const AVFrame& frame) {
 void FrameToPhotograph::convert(const AVFrame& frame, Photograph& photograph) {
   prepare(frame);
   const int channels = grey_ ? 1 : 3;
-  if (wide_) {
+  Photograph* const whole[] = {&photograph};
+  if (has_chroma_) {
+    wide_ ? fill_colours<std::uint16_t>(frame, whole) : fill_colours<std::uint8_t>(frame, whole);
+  } else if (wide_) {
     fill(frame, shape<std::uint16_t>(photograph, frame.width, frame.height, channels));
   } else {
     fill(frame, shape<std::uint8_t>(photograph, frame.width, frame.height, channels));
+  }
+}
+
+bool FrameToPhotograph::convert_halves(const AVFrame& frame, const PictureHalves& halves) {
+  prepare(frame);
+  if (!has_chroma_ || frame.width % 2 != 0) {
+    return false;
+  }
+  wide_ ? fill_colours<std::uint16_t>(frame, halves) : fill_colours<std::uint8_t>(frame, halves);
+  return true;
+}
+
+void FrameToPhotograph::scale(const AVFrame& frame, std::uint8_t* const* planes,
+                              const int* pitches) {
+  if (sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, planes, pitches) !=
+      frame.height) {
+    throw Error("its pixel format is not supported");
   }
 }
 
@@ -205,13 +219,44 @@ void FrameToPhotograph::fill(const AVFrame& frame, Image<T>& image) {
   }
   const std::array<std::uint8_t*, 4> rgb = {reinterpret_cast<std::uint8_t*>(image.row(0))};
   const std::array<int, 4> rgb_pitch = {static_cast<int>(image.view().stride() * sizeof(T))};
-  if (sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height,
-                yuv_ != nullptr ? yuv_->data : rgb.data(),
-                yuv_ != nullptr ? yuv_->linesize : rgb_pitch.data()) != frame.height) {
-    throw Error("its pixel format is not supported");
+  scale(frame, rgb.data(), rgb_pitch.data());
+}
+
+kernels::LumaChromaRow FrameToPhotograph::next_row(int y) {
+  if (yuv_ == nullptr) {
+    return upsampler_.next_row();
   }
-  for (int y = 0; yuv_ != nullptr && y < frame.height; ++y) {
-    kernels::rgb_row(row_of(*yuv_, y), factors_, image.row(y));
+  const auto row = [&](int plane) {
+    return reinterpret_cast<const std::uint16_t*>(yuv_->data[plane] +
+                                                  std::ptrdiff_t{y} * yuv_->linesize[plane]);
+  };
+  return {row(0), row(1), row(2), yuv_->width};
+}
+
+template <typename T>
+void FrameToPhotograph::fill_colours(const AVFrame& frame, std::span<Photograph* const> parts) {
+  if (yuv_ == nullptr) {
+    upsampler_.begin(frame);
+  } else {
+    scale(frame, yuv_->data, yuv_->linesize);
+  }
+  const int width = frame.width / static_cast<int>(parts.size());
+  for (Photograph* const part : parts) {
+    if (part != nullptr) {
+      shape<T>(*part, width, frame.height, 3);
+    }
+  }
+  for (int y = 0; y < frame.height; ++y) {
+    kernels::LumaChromaRow row = next_row(y);
+    row.width = width;
+    for (Photograph* const part : parts) {
+      if (part != nullptr) {
+        kernels::rgb_row(row, factors_, pixels_of<T>(*part).row(y));
+      }
+      row.luma += width;
+      row.chroma_blue += width;
+      row.chroma_red += width;
+    }
   }
 }
 

@@ -1,13 +1,19 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/image/photograph.h"
+#include "engine/io/video/chroma_upsampler.h"
 #include "engine/io/video/libav.h"
 #include "kernels/rgb_row/rgb_row.h"
 
 namespace vantage {
+
+/// The left and the right half of a picture; null: not wanted.
+using PictureHalves = std::array<Photograph*, 2>;
 
 /// Converts decoded frames to photographs: RGB for colours, one channel for grey; 8-bit, or 16-bit
 /// if the frame has more bits. Chroma is interpolated bicubically from its sample positions. Matrix
@@ -19,11 +25,22 @@ class FrameToPhotograph {
   /// converted.
   void convert(const AVFrame& frame, Photograph& photograph);
 
+  /// The same pixels, half of the columns to either photograph. False, and nothing is done, where
+  /// that does not come by itself: for grey and RGB formats and odd widths.
+  bool convert_halves(const AVFrame& frame, const PictureHalves& halves);
+
  private:
   /// Prepares convert() for frames like this one.
   void prepare(const AVFrame& frame);
   template <typename T>
   void fill(const AVFrame& frame, Image<T>& image);
+  /// By the scaler.
+  void scale(const AVFrame& frame, std::uint8_t* const* planes, const int* pitches);
+  /// Of luma and chroma; each part gets as many columns.
+  template <typename T>
+  void fill_colours(const AVFrame& frame, std::span<Photograph* const> parts);
+  /// The next row, from above, of luma and chroma of every pixel.
+  kernels::LumaChromaRow next_row(int y);
 
   /// Frame properties that the following members were made for.
   struct Source {
@@ -37,10 +54,13 @@ class FrameToPhotograph {
   };
   Source source_;
   bool grey_ = false;
-  bool wide_ = false;                  ///< more than 8 bits
+  bool wide_ = false;  ///< more than 8 bits
+  bool has_chroma_ = false;
   std::vector<std::uint16_t> levels_;  ///< value of each grey sample; empty: not grey
   LibavScaler scaler_;
-  LibavFrame yuv_;  ///< 16-bit luma and chroma of every pixel; empty: the scaler makes the result
+  LibavFrame
+      yuv_;  ///< what the scaler makes of chroma; empty: it makes the result, or is not there
+  ChromaUpsampler upsampler_;
   kernels::ColourFactors factors_;
 };
 

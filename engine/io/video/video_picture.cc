@@ -136,27 +136,38 @@ void VideoPicture::set_neighbours(const VideoPicture& before, const VideoPicture
 
 std::size_t VideoPicture::bytes() const { return is_empty() ? 0 : bytes_of(*frame_); }
 
-void VideoPicture::convert(Photograph& photograph) {
+bool VideoPicture::convert(Photograph& photograph, const PictureHalves& halves) {
   using Deinterlacing = PictureHandling::Deinterlacing;
   LibavFrame frame = std::move(frame_);
   const auto converter = converters_->borrow();
-  photograph.origin = {};
-  photograph.left_out = {};
+  bool is_halved = false;
+  PhotographOrigin origin;
   if (!handling_.lossy_codec.empty()) {
-    photograph.origin.coding = coding_of_frame(*frame, handling_.lossy_codec);
+    origin.coding = coding_of_frame(*frame, handling_.lossy_codec);
+  }
+  for (Photograph* const made : {&photograph, halves[0], halves[1]}) {
+    if (made != nullptr) {
+      made->origin = origin;
+      made->left_out = {};
+    }
   }
   try {
     if (handling_.deinterlacing != Deinterlacing::kNone) {
       frame = deinterlaced(before_.get(), *frame, after_.get(),
                            handling_.deinterlacing == Deinterlacing::kFlaggedFrames);
     }
-    if (handling_.takes_fields_apart && frame->interlaced_frame != 0 && frame->height % 4 == 0) {
+    const bool has_fields =
+        handling_.takes_fields_apart && frame->interlaced_frame != 0 && frame->height % 4 == 0;
+    is_halved = halves != PictureHalves{} && !has_fields &&
+                handling_.turn == Orientation::kAsStored &&
+                converter->convert_halves(*frame, halves);
+    if (has_fields) {
       Photograph upper;
       Photograph lower;
       converter->convert(*field_of(*frame, 0), upper);
       converter->convert(*field_of(*frame, 1), lower);
       pack_stereo(upper, lower, {.layout = StereoLayout::kRows}, photograph);
-    } else {
+    } else if (!is_halved) {
       converter->convert(*frame, photograph);
     }
   } catch (const Error& error) {
@@ -164,7 +175,10 @@ void VideoPicture::convert(Photograph& photograph) {
   }
   before_.reset();
   after_.reset();
-  turn_upright(photograph, handling_.turn);
+  if (!is_halved) {
+    turn_upright(photograph, handling_.turn);
+  }
+  return is_halved;
 }
 
 }  // namespace vantage

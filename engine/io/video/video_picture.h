@@ -44,10 +44,10 @@ class VideoPicture {
   [[nodiscard]] std::size_t bytes() const;
 
   /// Converts it to a photograph, whose memory is reused, deinterlaced and turned as its video is
-  /// handled, and releases the decoder's memory. Thread
-  /// rule: concurrently for different pictures. Throws Error, with the name, when its pixel format
-  /// cannot be converted.
-  void convert(Photograph& photograph);
+  /// handled, and releases the decoder's memory. Where it can, it makes `halves` instead, and
+  /// returns true; with none, never. Thread rule: concurrently for different pictures. Throws
+  /// Error, with the name, when its pixel format cannot be converted.
+  bool convert(Photograph& photograph, const PictureHalves& halves = {});
 
  private:
   LibavFrame frame_;

@@ -28,7 +28,17 @@ bool PackedPairs::fetch(FramePair& pair) {
 
 void PackedPairs::make_images(FramePair& pair) const {
   FetchedFrame& frame = pair.fetched[0];
-  frame.decode();
+  if (packing_ == StereoPacking{.right_first = packing_.right_first} && !frame.picture.is_empty()) {
+    PictureHalves halves = {&pair.left, pair.wants_right ? &pair.right : nullptr};
+    if (packing_.right_first) {
+      std::swap(halves[0], halves[1]);
+    }
+    if (frame.picture.convert(frame.photograph, halves)) {
+      return;
+    }
+  } else {
+    frame.decode();
+  }
   try {
     if (pair.wants_right) {
       unpack_stereo(frame.photograph, packing_, pair.left, pair.right);
