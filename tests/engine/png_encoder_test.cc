@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "engine/execution.h"
+#include "engine/io/images/png_decoder.h"
 
 namespace vantage::png_encoder_test {
 
@@ -28,6 +29,21 @@ Image<T> read_by_opencv(const Bytes& bytes) {
   return image;
 }
 
+/// All checksums of the file are right, of which libpng forgives some.
+void expect_checksums(const Bytes& bytes, std::size_t row_bytes, int height) {
+  const PngStructure structure = check_png_structure(FileBytes(bytes, "a.png"));
+  Bytes stream;
+  for (const auto part : structure.pixel_data) {
+    stream.insert(stream.end(), part.begin(), part.end());
+  }
+  Bytes rows((1 + row_bytes) * static_cast<std::size_t>(height));
+  auto* const decompressor = libdeflate_alloc_decompressor();
+  EXPECT_EQ(libdeflate_zlib_decompress(decompressor, stream.data(), stream.size(), rows.data(),
+                                       rows.size(), nullptr),
+            LIBDEFLATE_SUCCESS);
+  libdeflate_free_decompressor(decompressor);
+}
+
 /// Writes `image` by threads in any order and by one: OpenCV reads it, the same file both times.
 /// Returns the file.
 template <typename T>
@@ -37,6 +53,8 @@ Bytes written(const Image<T>& image, Execution& execution) {
   Bytes of_one_thread;
   encode_png(image, of_one_thread);
   EXPECT_EQ(bytes, of_one_thread);
+  expect_checksums(bytes, sizeof(T) * static_cast<std::size_t>(image.width() * image.channels()),
+                   image.height());
   const Image<T> read = read_by_opencv<T>(bytes);
   const bool has_shape = read.width() == image.width() && read.height() == image.height() &&
                          read.channels() == image.channels();

@@ -72,7 +72,7 @@ struct PaethFilter {
 };
 
 /// PNG's filter Sub: a byte minus that of the pixel before, the higher of a value first. Paeth
-/// makes maps smaller by a tenth, but they take libpng half as long again to read.
+/// makes maps smaller by 7 %, but libpng undoes it for two bytes a pixel without vectors.
 struct SubFilter {
   static constexpr std::uint8_t kNumber = 1;
   static void apply(const std::uint16_t* row, const std::uint16_t* /*above*/, std::size_t count,
