@@ -1,36 +1,35 @@
 #include "scheduler/pass_planner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace vantage::scheduler {
 namespace {
 
-// How many times the rings and states of one strip may fill a cache. Level 1: stages stream through
-// them, so a little too much still hits mostly. Level 2: the rest is for image rows, results and
-// whatever else runs on the core.
-constexpr double kLevel1Share = 1.2;
-constexpr double kLevel2Share = 0.5;
-// For passes of more parts than kFewParts: their rings are large beside the image rows.
-constexpr double kLevel2ShareOfManyParts = 0.75;
-constexpr std::size_t kFewParts = 3;
+// The part of level 2 that the rings and states of a strip may fill before the next level is felt:
+// the rest is for image rows, results and whatever else runs on the core. Level 1 does not matter:
+// strips that fit into it are so narrow that starting rows costs more than it saves (SSD on
+// 1282x540x128, 25 columns in level 1: 1.4 times as long as 160 to 1282 in level 2; Zen 4,
+// 2026-11-28).
+constexpr double kLevel2Share = 0.75;
+// A stage reads half of its bytes in rows that the one before has just made, so that time per cell
+// grows slowly with what does not fit, by so much per doubling. In a level 3 of a few cores: 1.0 to
+// 1.1 times the time in level 2 at twice its size, 1.0 (local stopping) to 1.3 (membrane) at ten
+// times (1282x540x128, Zen 4, 2026-11-28).
+constexpr double kNearLevel3Slope = 0.05;
+// Beyond the thread's share of that, up to the time from memory: 1.9 to 2.6 at twice the share,
+// likewise. From the end of level 2 where level 3 is far: 1.1 to 1.5 at 1.3 times kLevel2Share, 1.6
+// to 2.4 at 1.9 times, 1.9 to 3.3 at 7 to 13 times (Bayes and diffusion on 1282x278x256, Xeon with
+// 480 MiB, 2026-11-22).
+constexpr double kFarSlope = 1.0;
+constexpr double kMemoryTime = 3.0;
 // The part of level 3 that the strips of all threads may fill: images, stored rows and other
 // programs want room too.
 constexpr double kLevel3Share = 0.4;
-// Time per cell while the strips of all threads live in their level-2 caches, in the level 3 that
-// they share, or beyond, level 1 being 1. Iterations stream through their rings, so that a level 3
-// of a few cores is nearly as good as level 2: ten of Bayes on 450x375x64, strips of 225 columns in
-// level 3 took 0.93 of the time of 57 columns in level 2, whose halos are wider (Zen 4,
-// 2026-11-21).
-constexpr double kLevel2Time = 1.35;
-constexpr double kLevel3Time = 1.5;
-// A level 3 that dozens of cores share is far from each of them: ten iterations on 1282x278x256
-// took 2.8 (diffusion) and 1.8 (Bayes) times as long per cell as in level 2 (Xeon with 480 MiB,
-// 2026-11-22). Where it has more bytes for each core in sight than this many level 2, which no core
-// has for its own, most of its cores are out of sight: of a virtual machine or an affinity mask.
-constexpr double kFarLevel3Time = 3.0;
-constexpr double kMaxLevel3PerCore = 32;
-constexpr double kMemoryTime = 4.0;
+// A larger level 3 is that of dozens of cores, far from each, and few of them may be in sight: of a
+// virtual machine or an affinity mask. Those that a ring of cores shares end at 96 MiB.
+constexpr std::size_t kMaxNearLevel3 = std::size_t{96} << 20;
 // Starting a row of a stage takes as long as this many bytes of its cells.
 constexpr double kRowStartBytes = 1024;
 // Setting out a stage in a task takes as long as starting this many rows.
@@ -177,20 +176,14 @@ void PassPlanner::estimate(const std::vector<int>& rows, PassPlan& plan) const {
 
 double PassPlanner::cache_time(std::size_t scratch_bytes) const {
   const auto bytes = static_cast<double>(scratch_bytes);
-  if (bytes <= kLevel1Share * static_cast<double>(machine_.l1_data_bytes)) {
-    return 1;
-  }
-  const double share = layout_.parts.size() > kFewParts ? kLevel2ShareOfManyParts : kLevel2Share;
-  if (bytes <= share * static_cast<double>(machine_.l2_bytes)) {
-    return kLevel2Time;
-  }
-  const bool shared = bytes * threads_ <= kLevel3Share * static_cast<double>(machine_.l3_bytes);
-  if (!shared) {
-    return kMemoryTime;
-  }
-  const bool is_far = static_cast<double>(machine_.l3_bytes) >
-                      kMaxLevel3PerCore * static_cast<double>(machine_.l2_bytes) * machine_.cores;
-  return is_far ? kFarLevel3Time : kLevel3Time;
+  const double near = kLevel2Share * static_cast<double>(machine_.l2_bytes);
+  const double of_thread = machine_.l3_bytes > kMaxNearLevel3
+                               ? 0
+                               : kLevel3Share * static_cast<double>(machine_.l3_bytes) / threads_;
+  const double far = std::max(near, of_thread);
+  const double time = 1 + kNearLevel3Slope * std::log2(std::clamp(bytes, near, far) / near) +
+                      kFarSlope * std::log2(std::max(bytes, far) / far);
+  return std::min(time, kMemoryTime);
 }
 
 double PassPlanner::imbalance(int tasks) const {

@@ -11,9 +11,9 @@
 namespace vantage::scheduler {
 namespace {
 
-// Storing a state between two passes and loading it again, in units of one stage's work in level 1:
-// the same bytes for all stages, 3 of Bayes in level 2 and 5 to 7 of diffusion.
-constexpr double kPassCost = 4.0;
+// Storing a state between two passes and loading it again, in units of one stage's work in level 2:
+// 3 of Bayes, 5 to 7 of diffusion (Xeon, 2026-11-22), 1 to 2 of either (Zen 4, 2026-11-28).
+constexpr double kPassCost = 3.0;
 // Numbers of passes to try: all up to kFewPasses, then each about this times the last.
 constexpr int kFewPasses = 12;
 constexpr double kPassesStep = 1.15;
