@@ -1,6 +1,6 @@
 #include "scheduler/processor_account.h"
 
-#include <ctime>
+#include "scheduler/trace.h"
 
 namespace vantage::scheduler {
 namespace {
@@ -10,12 +10,6 @@ struct ChargedThread {
   std::int64_t since_ns = 0;  ///< processor time of the thread when the account came into use
 };
 thread_local ChargedThread g_charged;
-
-std::int64_t thread_time_ns() {
-  timespec time{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
-}
 
 }  // namespace
 

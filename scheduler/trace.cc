@@ -1,6 +1,7 @@
 #include "scheduler/trace.h"
 
 #include <chrono>
+#include <ctime>
 #include <utility>
 
 namespace vantage::scheduler {
@@ -29,6 +30,12 @@ std::int64_t trace_clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::steady_clock::now().time_since_epoch())
       .count();
+}
+
+std::int64_t thread_time_ns() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return std::int64_t{1'000'000'000} * time.tv_sec + time.tv_nsec;
 }
 
 Trace::Trace(std::int64_t max_spans)
@@ -93,11 +100,17 @@ void Span::begin(std::string_view name, SpanKind kind, const SpanPlace& place) {
   if (place.frame < 0 && outer_ != nullptr) {
     record_.place.frame = outer_->record_.place.frame;
   }
+  record_.processor_ns = -thread_time_ns();
   record_.begin_ns = log->trace->now_ns();
 }
 
 void Span::end() {
   record_.end_ns = log_->trace->now_ns();
+  record_.processor_ns += thread_time_ns();
+  if (outer_ != nullptr) {
+    outer_->inner_processor_ns_ += record_.processor_ns;
+  }
+  record_.processor_ns -= inner_processor_ns_;
   log_->innermost = outer_;
   log_->data.spans.push_back(record_);
 }

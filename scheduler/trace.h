@@ -50,6 +50,7 @@ struct SpanRecord {
   SpanKind kind = SpanKind::kWork;
   std::int64_t begin_ns = 0;
   std::int64_t end_ns = 0;
+  std::int64_t processor_ns = 0;  ///< of the thread, without the spans within
   SpanPlace place;
   std::size_t first_stage = 0;  ///< its stages in ThreadTrace::stages
   std::size_t stage_count = 0;
@@ -143,8 +144,12 @@ class Span {
 
   Trace::ThreadLog* log_ = nullptr;
   Span* outer_ = nullptr;
+  std::int64_t inner_processor_ns_ = 0;  ///< of the spans within
   SpanRecord record_;
 };
+
+/// Processor time of this thread.
+[[nodiscard]] std::int64_t thread_time_ns();
 
 /// Nanoseconds on the clock of traces.
 [[nodiscard]] std::int64_t trace_clock_ns();

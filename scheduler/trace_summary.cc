@@ -118,6 +118,7 @@ TraceSummary summarise(const TraceData& trace) {
             TraceSummary::Named& named =
                 (is_wait ? summary.waits : summary.work)[std::string(span.name)];
             named.self_s += seconds(self_ns);
+            named.processor_s += seconds(span.processor_ns);
             ++named.count;
           }
           if (span.kind == SpanKind::kWork) {

@@ -24,7 +24,8 @@ struct TraceSummary {
     double wait_s = 0;
   };
   struct Named {
-    double self_s = 0;  ///< without the spans within
+    double self_s = 0;       ///< without the spans within
+    double processor_s = 0;  ///< of these
     int count = 0;
   };
 

@@ -79,6 +79,26 @@ std::string scaling(const Profile& profile) {
   return text;
 }
 
+std::string growth(const Profile& profile) {
+  std::vector<std::string> heads = {"", ""};
+  for (const ThreadCountProfile& count : profile.thread_counts) {
+    heads.push_back(threads_text(count.threads));
+    if (count.threads > profile.thread_counts.front().threads) {
+      heads.emplace_back("growth");
+    }
+  }
+  TextTable table("Processor time by stage, ms a frame, and its growth by threads", heads);
+  for (const ProcessorGrowth& one : processor_growth(profile)) {
+    std::vector<std::string> cells = {one.name, one.kind, number_text(one.ms.front())};
+    for (std::size_t i = 1; i < one.ms.size(); ++i) {
+      cells.push_back(number_text(one.ms[i]));
+      cells.push_back(fmt::format("{:+.0f} %", 100 * one.growth[i]));
+    }
+    table.add(std::move(cells));
+  }
+  return table.empty() || profile.thread_counts.size() < 2 ? "" : "\n" + table.text();
+}
+
 std::string stages(const Profile& profile, const ThreadCountProfile& count) {
   const std::optional<ThreadRoofs> roofs = roofs_on(profile, count.threads);
   TextTable table(
@@ -191,8 +211,8 @@ std::string describe(const Profile& profile) {
   return fmt::format("{}\n{}, {}, vantage {}; {} run{} each\n\n", profile.command,
                      profile.processor, profile.isa, profile.version, max.runs,
                      max.runs == 1 ? "" : "s") +
-         advice(profile) + findings(profile) + scaling(profile) + stages(profile, max) +
-         parts(max) + workers(max) + ceilings(profile) + memory(profile);
+         advice(profile) + findings(profile) + scaling(profile) + growth(profile) +
+         stages(profile, max) + parts(max) + workers(max) + ceilings(profile) + memory(profile);
 }
 
 }  // namespace vantage::apps

@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 std::map<std::string, RunMeasurement::Part> parts_in(const SettingValue& names) {
   std::map<std::string, RunMeasurement::Part> parts;
   for (const auto& [name, part] : names.items()) {
-    parts[name] = {part.at("seconds"), part.at("count")};
+    parts[name] = {part.at("seconds"), part.at("count"), part.at("processor_seconds")};
   }
   return parts;
 }
@@ -56,7 +56,13 @@ RunMeasurement measurement_in(const SettingValue& report) {
   run.cells_per_s = report.at("cells_per_second");
   run.peak_memory_bytes = report.at("peak_memory_bytes");
   if (report.contains("results") && report.at("results").contains("frames")) {
-    run.frames_per_s = report.at("results").at("frames").get<double>() / run.wall_s;
+    const SettingValue& results = report.at("results");
+    run.frames = results.at("frames");
+    run.frames_per_s = run.frames / run.wall_s;
+    for (const auto& [step, seconds] : results.at("processor_seconds_per_frame").items()) {
+      const double of_run_s = run.frames * seconds.get<double>();
+      run.frame_steps[step] = {of_run_s, run.frames, of_run_s};
+    }
   }
   if (report.contains("memory")) {
     for (const auto& [owner, bytes] : report.at("memory").at("owners").items()) {

@@ -60,7 +60,9 @@ SettingValue arguments_of(const scheduler::SpanRecord& span, const scheduler::Th
 SettingValue seconds_of(const std::map<std::string, scheduler::TraceSummary::Named>& names) {
   SettingValue values = SettingValue::object();
   for (const auto& [name, totals] : names) {
-    values[name] = {{"seconds", totals.self_s}, {"count", totals.count}};
+    values[name] = {{"seconds", totals.self_s},
+                    {"processor_seconds", totals.processor_s},
+                    {"count", totals.count}};
   }
   return values;
 }

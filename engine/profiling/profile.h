@@ -32,8 +32,9 @@ struct StageProfile {
 /// them ("match left").
 struct PartProfile {
   std::string name;
-  ProfileSample seconds;  ///< over all threads, excluding nested parts
-  double count = 0;       ///< number of spans
+  ProfileSample seconds;           ///< over all threads, excluding nested parts
+  double count = 0;                ///< number of spans
+  ProfileSample processor_s = {};  ///< of the seconds, those in which the threads ran
 };
 
 struct ThreadProfile {
@@ -80,11 +81,13 @@ struct ThreadCountProfile {
   ProfileSample peak_memory_bytes;
   /// Maximum ÷ mean work of a thread of the pool, ≥ 1.
   ProfileSample imbalance;
-  std::vector<StageProfile> stages;    ///< longest first
-  std::vector<PartProfile> parts;      ///< longest first
-  std::vector<PartProfile> waits;      ///< longest first
-  WaitingProfile waiting_for;          ///< the same time as in waits, by cause
-  std::vector<ThreadProfile> workers;  ///< of the run with the median wall time
+  double frames = 1;
+  std::vector<PartProfile> frame_steps;  ///< of a run, longest first: processor time alone
+  std::vector<StageProfile> stages;      ///< longest first
+  std::vector<PartProfile> parts;        ///< longest first
+  std::vector<PartProfile> waits;        ///< longest first
+  WaitingProfile waiting_for;            ///< the same time as in waits, by cause
+  std::vector<ThreadProfile> workers;    ///< of the run with the median wall time
 };
 
 /// Speed-up by more threads.

@@ -55,6 +55,37 @@ std::optional<double> amdahl_fit(std::span<const SpeedUp> speed_ups) {
   return xx > 0 ? std::optional(xy / xx) : std::nullopt;
 }
 
+std::vector<ProcessorGrowth> processor_growth(const Profile& profile) {
+  constexpr double kMinShare = 0.005;
+  std::vector<ProcessorGrowth> all;
+  const auto add = [&](const char* kind, auto entries, auto seconds, double min_s) {
+    for (const auto& first : profile.thread_counts.front().*entries) {
+      ProcessorGrowth one{first.name, kind, {}, {}};
+      for (const ThreadCountProfile& count : profile.thread_counts) {
+        const auto here = std::ranges::find(count.*entries, first.name,
+                                            [](const auto& entry) { return entry.name; });
+        const double all_s = here == (count.*entries).end() ? 0 : ((*here).*seconds).median;
+        one.ms.push_back(1e3 * all_s / std::max(1.0, count.frames));
+        one.growth.push_back(one.ms.front() > 0 ? one.ms.back() / one.ms.front() - 1 : 0);
+      }
+      const auto is_known = [&](const ProcessorGrowth& other) { return other.name == one.name; };
+      if ((first.*seconds).median > min_s && std::ranges::none_of(all, is_known)) {
+        all.push_back(std::move(one));
+      }
+    }
+  };
+  if (!profile.thread_counts.empty()) {
+    double min_s = 0;
+    for (const PartProfile& part : profile.thread_counts.front().parts) {
+      min_s += kMinShare * part.processor_s.median;
+    }
+    add("step", &ThreadCountProfile::frame_steps, &PartProfile::processor_s, 0);
+    add("part", &ThreadCountProfile::parts, &PartProfile::processor_s, min_s);
+    add("stage", &ThreadCountProfile::stages, &StageProfile::seconds, min_s);
+  }
+  return all;
+}
+
 double stages_s(const ThreadCountProfile& count) {
   double result = 0;
   for (const StageProfile& stage : count.stages) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/profiling/profile.h"
@@ -32,6 +33,19 @@ std::vector<SpeedUp> speed_ups(std::span<const WallTimes> times);
 /// squares in 1/ψ; p is the number of threads relative to the first. Empty with fewer than two
 /// numbers of threads.
 std::optional<double> amdahl_fit(std::span<const SpeedUp> speed_ups);
+
+/// Processor time that a frame, or the pair, takes in a step of frames, a part of the work or a
+/// stage of matching (which is timed by the clock: more threads than processors lengthen it).
+struct ProcessorGrowth {
+  std::string name;
+  std::string kind;            ///< "step", "part", "stage"
+  std::vector<double> ms;      ///< milliseconds, by Profile::thread_counts
+  std::vector<double> growth;  ///< against the fewest threads, 0.1 being a tenth more
+};
+
+/// All steps, and what else takes a two-hundredth of the work; each kind longest first, each name
+/// once.
+std::vector<ProcessorGrowth> processor_growth(const Profile& profile);
 
 /// Processor time of all stages, in seconds.
 double stages_s(const ThreadCountProfile& count);

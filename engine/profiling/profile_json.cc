@@ -30,7 +30,10 @@ static void to_json(ProfileJson& json, const StageProfile& stage) {
 }
 
 static void to_json(ProfileJson& json, const PartProfile& part) {
-  json = {{"name", part.name}, {"seconds", part.seconds}, {"count", part.count}};
+  json = {{"name", part.name},
+          {"seconds", part.seconds},
+          {"processor_s", part.processor_s},
+          {"count", part.count}};
 }
 
 static void to_json(ProfileJson& json, const ThreadProfile& thread) {
@@ -69,6 +72,8 @@ static void to_json(ProfileJson& json, const ThreadCountProfile& count) {
           {"work_share", count.work_share},
           {"peak_memory_bytes", count.peak_memory_bytes},
           {"imbalance", count.imbalance},
+          {"frames", count.frames},
+          {"frame_steps", count.frame_steps},
           {"stages", count.stages},
           {"parts", count.parts},
           {"waits", count.waits},
@@ -158,6 +163,11 @@ void add_figures(const Profile& profile, const ThreadCountProfile& count, Profil
 void add_figures(const Profile& profile, ProfileJson& document) {
   for (std::size_t i = 0; i < profile.thread_counts.size(); ++i) {
     add_figures(profile, profile.thread_counts[i], document["thread_counts"][i]);
+  }
+  document["processor_growth"] = ProfileJson::array();
+  for (const ProcessorGrowth& one : processor_growth(profile)) {
+    document["processor_growth"].push_back(
+        {{"name", one.name}, {"kind", one.kind}, {"ms", one.ms}, {"growth", one.growth}});
   }
   document["advice"] = profile.advice;
   document["findings"] = ProfileJson::array();

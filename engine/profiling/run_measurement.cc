@@ -74,9 +74,13 @@ std::vector<PartProfile> parts_of(Runs runs, Entries<RunMeasurement::Part> entri
   using Part = RunMeasurement::Part;
   std::vector<PartProfile> parts;
   for (const std::string& name : names_in<Part>(runs, entries)) {
+    const auto sample = [&](double Part::*figure) {
+      return sample_of_entry<Part>(runs, entries, name, figure);
+    };
     parts.push_back({.name = name,
-                     .seconds = sample_of_entry<Part>(runs, entries, name, &Part::seconds),
-                     .count = sample_of_entry<Part>(runs, entries, name, &Part::count).median});
+                     .seconds = sample(&Part::seconds),
+                     .count = sample(&Part::count).median,
+                     .processor_s = sample(&Part::processor_s)});
   }
   sort_by_time(parts);
   return parts;
@@ -142,6 +146,8 @@ ThreadCountProfile summarise_runs(int threads, Runs runs) {
       runs, [](const RunMeasurement& run) { return static_cast<double>(run.peak_memory_bytes); });
   profile.imbalance =
       sample_over(runs, [](const RunMeasurement& run) { return imbalance_of(run.workers); });
+  profile.frames = sample(&RunMeasurement::frames).median;
+  profile.frame_steps = parts_of(runs, &RunMeasurement::frame_steps);
   profile.stages = stages_of(runs);
   profile.parts = parts_of(runs, &RunMeasurement::parts);
   profile.waits = parts_of(runs, &RunMeasurement::waits);

@@ -24,16 +24,19 @@ struct RunMeasurement {
   struct Part {
     double seconds = 0;
     double count = 0;
+    double processor_s = 0;
   };
 
   double wall_s = 0;
   double compute_s = 0;
   double cells_per_s = 0;
+  double frames = 1;
   double frames_per_s = 0;  ///< 0 for one pair
   double work_share = 0;
   std::vector<ThreadProfile> workers;
   /// Seconds of the command's steps from its report: "read", "check", "match left", …
   std::map<std::string, double> steps;
+  std::map<std::string, Part> frame_steps;  ///< of a run: processor time by account
   std::map<std::string, Stage> stages;
   std::map<std::string, Part> parts;
   std::map<std::string, Part> waits;

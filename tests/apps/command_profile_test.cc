@@ -89,6 +89,13 @@ TEST_F(SlowProfileTest, KeepsWhereTheTimeOfAPairGoes) {
     }
     EXPECT_NEAR(std::remainder(pool_s, count.at("wall_s").at("median").get<double>()), 0, 1e-3);
   }
+  const json& growth = kept.at("processor_growth");
+  const auto left =
+      std::ranges::find_if(growth, [](const json& one) { return one.at("name") == "match left"; });
+  ASSERT_NE(left, growth.end());
+  EXPECT_EQ(left->at("ms").size(), 2U);
+  EXPECT_EQ(left->at("growth")[0], 0);
+  EXPECT_THAT(result.out, HasSubstr("growth"));
   EXPECT_EQ(kept.at("speed_ups")[0].at("ratio").at("median"), 1);
   EXPECT_TRUE(kept.at("speed_ups")[0].at("serial_fraction").is_null());
   EXPECT_TRUE(kept.at("serial_fraction").is_number());
@@ -198,6 +205,12 @@ TEST_F(SlowProfiledRun, BeginsAnewAndLeavesTheFolderAlone) {
       count.at("parts"), [](const json& part) { return part.at("name") == "decode"; });
   ASSERT_NE(decode, count.at("parts").end());
   EXPECT_EQ(decode->at("count"), kFrames);  // all frames, not those that are left
+  const json& growth = kept.at("processor_growth");
+  for (const char* step : {"read", "decode", "match", "encode"}) {
+    EXPECT_TRUE(std::ranges::any_of(growth, [&](const json& one) {
+      return one.at("kind") == "step" && one.at("name") == step && one.at("ms")[0] > 0;
+    })) << step;
+  }
   EXPECT_TRUE(kept.at("serial_fraction").is_null());
   expect_untouched();
 }

@@ -89,6 +89,44 @@ TEST(AmdahlFit, NeedsTwoNumbersOfThreads) {
   EXPECT_FALSE(amdahl_fit({}));
 }
 
+TEST(ProcessorGrowthTable, IsTimeOfAFrameAgainstTheFewestThreads) {
+  const auto part = [](const char* name, double processor_s) {
+    PartProfile one;
+    one.name = name;
+    one.seconds.median = 100;  // of waiting for a processor, too
+    one.processor_s.median = processor_s;
+    return one;
+  };
+  Profile profile;
+  for (const auto& [threads, frames, search_s] :
+       {std::tuple(2, 4.0, 2.0), std::tuple(16, 8.0, 5.0)}) {
+    ThreadCountProfile& count = profile.thread_counts.emplace_back();
+    count.threads = threads;
+    count.frames = frames;
+    count.frame_steps = {part("match", search_s + 1), part("views", 0.001)};
+    count.parts = {part("match left", search_s), part("views", 0.001), part("tiny", 0.001)};
+    StageProfile stage;
+    stage.name = "cost";
+    stage.seconds.median = search_s / 2;
+    count.stages = {stage};
+  }
+  profile.thread_counts[1].parts.push_back(part("new", 1));  // nothing to compare with
+  const std::vector<ProcessorGrowth> all = processor_growth(profile);
+  ASSERT_EQ(all.size(), 4U);
+  EXPECT_EQ(all[0].name, "match");
+  EXPECT_EQ(all[0].kind, "step");
+  EXPECT_EQ(all[0].ms, (std::vector<double>{750, 750}));
+  EXPECT_EQ(all[0].growth, (std::vector<double>{0, 0}));
+  EXPECT_EQ(all[1].name, "views");
+  EXPECT_EQ(all[2].name, "match left");
+  EXPECT_EQ(all[2].kind, "part");
+  EXPECT_EQ(all[2].ms, (std::vector<double>{500, 625}));
+  EXPECT_EQ(all[2].growth, (std::vector<double>{0, 0.25}));
+  EXPECT_EQ(all[3].kind, "stage");
+  EXPECT_EQ(all[3].growth, (std::vector<double>{0, 0.25}));
+  EXPECT_TRUE(processor_growth({}).empty());
+}
+
 TEST(StageFigures, AreWhatTheCountsComeTo) {
   StageProfile stage;
   EXPECT_EQ(nanoseconds_per_cell(stage), 0);

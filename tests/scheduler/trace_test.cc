@@ -258,6 +258,35 @@ TEST(Trace, NamesThreadsOutsideOfThePool) {
   EXPECT_EQ(summarise(data).waits.at("flush").count, 1);
 }
 
+TEST(Trace, ChargesProcessorTimeToTheInnermostSpan) {
+  const auto run_for = [](std::int64_t nanoseconds) {
+    const std::int64_t end = thread_time_ns() + nanoseconds;
+    while (thread_time_ns() < end) {
+    }
+  };
+  Trace trace;
+  const std::int64_t before = thread_time_ns();
+  std::int64_t within = 0;
+  {
+    const Span outer("outer");
+    const std::int64_t begin = thread_time_ns();
+    for (int i = 0; i < 2; ++i) {
+      const Span inner("inner");
+      run_for(2'000'000);
+    }
+    run_for(1'000'000);
+    within = thread_time_ns() - begin;
+  }
+  const std::int64_t around = thread_time_ns() - before;
+  const TraceSummary summary = summarise(trace.finish());
+  const double outer_s = summary.work.at("outer").processor_s;
+  const double inner_s = summary.work.at("inner").processor_s;
+  EXPECT_GE(inner_s, 0.004);
+  EXPECT_GE(outer_s, 0.001);
+  EXPECT_GE(outer_s + inner_s, 1e-9 * static_cast<double>(within) - 1e-12);
+  EXPECT_LE(outer_s + inner_s, 1e-9 * static_cast<double>(around) + 1e-12);
+}
+
 TEST(TraceSummary, CountsWhatSpansWithinDoNotCover) {
   TraceData data;
   data.wall_ns = 100;
