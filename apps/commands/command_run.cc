@@ -13,6 +13,7 @@
 #include "apps/reports/run_report.h"
 #include "apps/run/film_reports.h"
 #include "apps/run/resumed_run.h"
+#include "apps/run/run_forecast.h"
 #include "apps/run/run_results.h"
 #include "apps/run/run_session.h"
 #include "apps/run/run_settings.h"
@@ -112,11 +113,7 @@ int command_run(const Arguments& arguments) {
     }
   });
   const std::string plan = describe_plan(job, session);
-  if (job.dry_run) {
-    fmt::print("{}", plan);
-    return kExitDone;
-  }
-  if (!job.common.quiet) {
+  if (!job.common.quiet && !job.dry_run) {
     tell("{}", plan);
   }
   ExecutionOptions execution_options = session.execution;
@@ -124,6 +121,11 @@ int command_run(const Arguments& arguments) {
   Execution execution(execution_options);
   report.set_execution(execution);
   report.set_tuning(session.tuning.report, session.tuning.summary);
+  if (job.dry_run) {
+    fmt::print("{}{}", plan, forecast_run(job, session, execution, report));
+    report.write(job.common.report);
+    return kExitDone;
+  }
 
   if (writes_stream(job)) {
     return run_to_stream(job, session, execution, report);

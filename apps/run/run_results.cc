@@ -44,14 +44,6 @@ double per_frame(const SequenceReport& sequence, double seconds) {
   return seconds / (sequence.frames + sequence.pictures_again);
 }
 
-SettingValue processor_values(const SequenceReport& sequence) {
-  SettingValue values = SettingValue::object();
-  for (const SequenceStage& step : sequence.processor) {
-    values[step.name] = per_frame(sequence, step.seconds);
-  }
-  return values;
-}
-
 /// Steps that take no time are left out.
 void print_processor_time(const SequenceReport& sequence) {
   std::string line;
@@ -129,6 +121,14 @@ SettingValue maps_of(const SequenceReport& sequence) {
 }
 
 }  // namespace
+
+SettingValue processor_values(const SequenceReport& sequence) {
+  SettingValue values = SettingValue::object();
+  for (const SequenceStage& step : sequence.processor) {
+    values[step.name] = per_frame(sequence, step.seconds);
+  }
+  return values;
+}
 
 std::vector<Remark> remarks_of(const RunJob& job, const SequenceReport& sequence) {
   std::vector<Remark> remarks;

@@ -16,6 +16,9 @@ void fill_report(const RunJob& job, const RunSession& session, const SequenceRep
                  const DeliveredFrames& delivered, const std::string& sound_problem,
                  RunReport& report);
 
+/// Processor seconds of a frame by step; there is a frame.
+SettingValue processor_values(const SequenceReport& sequence);
+
 /// What matching remarked, each kind and subject once: of the first frame that has it.
 std::vector<Remark> remarks_of(const RunJob& job, const SequenceReport& sequence);
 

@@ -113,7 +113,7 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
             "Show the newest map, and the first view or the left image, in a window; q, Esc or "
             "closing it end the run as Ctrl-C does")
       .changes_results = false;
-  settings.flag("dry-run", job.dry_run, "Print the plan and stop");
+  settings.flag("dry-run", job.dry_run, "Print the plan and the time that it will take, and stop");
   settings.choice<ProgressStyle>("progress", job.progress,
                                  {{"auto", ProgressStyle::kAuto},
                                   {"bar", ProgressStyle::kBar},

@@ -338,6 +338,27 @@ TEST_F(RunCommand, VideosHoldWhatTheImagesShow) {
   }
 }
 
+TEST_F(RunCommand, ADryRunForecastsTheRun) {
+  const std::string report = folder_ / "report.json";
+  const std::size_t before = folder_.entries();
+  const Words outputs = {"--frames", "1-5", "--save", "disparity,views", "--view", "0.5"};
+  const ProcessResult result =
+      succeeds(run(folder_ / "out", joined(outputs, {"--dry-run", "--report", report})));
+  EXPECT_THAT(result.out, AllOf(HasSubstr(" frames/s and "), HasSubstr("like the first 5")));
+  EXPECT_EQ(folder_.entries(), before + 1);
+  const nlohmann::json kept = read_json(report).at("results");
+  EXPECT_EQ(kept.at("forecast").at("frames_timed"), 5);
+  const double frames_per_s = kept.at("forecast").at("frames_per_second");
+  EXPECT_GT(frames_per_s, 0);
+  EXPECT_GT(kept.at("forecast").at("seconds"), 5 / frames_per_s);
+  // The steps are those of the run.
+  succeeds(run(folder_ / "out", joined(outputs, {"--report", report})));
+  const nlohmann::json made = read_json(report).at("results").at("processor_seconds_per_frame");
+  for (const auto& [step, seconds] : made.items()) {
+    EXPECT_EQ(seconds > 0, kept.at("processor_seconds_per_frame").at(step) > 0) << step;
+  }
+}
+
 TEST_F(RunCommand, ADryRunTellsThePlanAndWritesNothing) {
   const ProcessResult result = succeeds(run(
       folder_ / "out", {"--dry-run", "--memory", "900M", "--frames", "2-3", "--in-flight", "3"}));
