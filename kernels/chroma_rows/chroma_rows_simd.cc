@@ -8,8 +8,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
 
-// Pixels whose channels are taken apart before they are converted; whole vectors of bytes. Rows end
-// with a block that is filled up.
+// Pixels that are converted at a time; whole vectors of bytes. Rows end with a block that has the
+// end of the one before in its rest.
 constexpr int kChromaBlock = 128;
 constexpr int kLumaShift = 15;
 constexpr int kChromaShift = 18;  // sums of two rows and of three columns have a weight of 8
@@ -97,39 +97,29 @@ HWY_INLINE void chroma_row(const ChannelBlock& block, const ChromaFactors& facto
 
 void chroma_rows_all(const ChromaRows& rows, const ChromaFactors& factors) {
   ChannelBlock block;
-  HWY_ALIGN std::uint8_t rest[2][3 * kChromaBlock] = {};
+  HWY_ALIGN std::uint8_t rgb[2][3 * kChromaBlock] = {};
   HWY_ALIGN std::uint8_t results[4][kChromaBlock];
   constexpr int kBefore = ChannelBlock::kFirst - 1;
+  for (int channel = 0; channel < 3; ++channel) {
+    block.sums[channel][kBefore + kChromaBlock] =
+        static_cast<std::uint16_t>(rows.rgb[0][channel] + rows.rgb[1][channel]);
+  }
   for (int x = 0; x < rows.width; x += kChromaBlock) {
     const int width = std::min(kChromaBlock, rows.width - x);
-    const bool is_whole = width == kChromaBlock;
-    for (std::size_t row = 0; row < 2 && !is_whole; ++row) {
-      std::copy_n(rows.rgb[row] + 3 * x, 3 * width, rest[row]);
+    for (std::size_t row = 0; row < 2; ++row) {
+      std::copy_n(rows.rgb[row] + 3 * x, 3 * width, rgb[row]);
     }
-    std::uint16_t before[3];
-    for (int channel = 0; channel < 3; ++channel) {
-      before[channel] =
-          x == 0 ? static_cast<std::uint16_t>(rows.rgb[0][channel] + rows.rgb[1][channel])
-                 : block.sums[channel][kBefore + kChromaBlock];
+    for (auto& sums : block.sums) {
+      sums[kBefore] = sums[kBefore + kChromaBlock];
     }
-    take_apart(is_whole ? rows.rgb[0] + 3 * x : rest[0], is_whole ? rows.rgb[1] + 3 * x : rest[1],
-               block);
-    for (int channel = 0; channel < 3; ++channel) {
-      block.sums[channel][kBefore] = before[channel];
-    }
-    const auto target = [&](int result, std::uint8_t* row, int first) {
-      return is_whole ? row + first : results[result];
-    };
-    luma_row(block.levels[0], factors, target(0, rows.luma[0], x));
-    luma_row(block.levels[1], factors, target(1, rows.luma[1], x));
-    chroma_row(block, factors, target(2, rows.chroma_blue, x / 2),
-               target(3, rows.chroma_red, x / 2));
-    if (!is_whole) {
-      std::copy_n(results[0], width, rows.luma[0] + x);
-      std::copy_n(results[1], width, rows.luma[1] + x);
-      std::copy_n(results[2], width / 2, rows.chroma_blue + x / 2);
-      std::copy_n(results[3], width / 2, rows.chroma_red + x / 2);
-    }
+    take_apart(rgb[0], rgb[1], block);
+    luma_row(block.levels[0], factors, results[0]);
+    luma_row(block.levels[1], factors, results[1]);
+    chroma_row(block, factors, results[2], results[3]);
+    std::copy_n(results[0], width, rows.luma[0] + x);
+    std::copy_n(results[1], width, rows.luma[1] + x);
+    std::copy_n(results[2], width / 2, rows.chroma_blue + x / 2);
+    std::copy_n(results[3], width / 2, rows.chroma_red + x / 2);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "engine/io/video/libav_scaler.h"
 
+#include <algorithm>
 #include <array>
 #include <new>
 #include <utility>
@@ -7,9 +8,7 @@
 #include "engine/error.h"
 
 extern "C" {
-#include <libavutil/buffer.h>
 #include <libavutil/frame.h>
-#include <libavutil/imgutils.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
 #include <libswscale/swscale.h>
@@ -91,37 +90,17 @@ LibavFrame make_picture(int width, int height, int format) {
   return frame;
 }
 
-namespace {
-
-constexpr int kRowBytes = 64;  // rows begin at multiples of it
-
-}  // namespace
-
 PicturePool::PicturePool(int width, int height, int format)
-    : width_(width), height_(height), format_(format) {
-  const auto pixels = static_cast<AVPixelFormat>(format);
-  // Encoders read a little beyond the last row.
-  const int bytes = av_image_get_buffer_size(pixels, width, height, kRowBytes) + 16 * kRowBytes;
-  buffers_ = av_buffer_pool_init(static_cast<std::size_t>(bytes), nullptr);
-  if (buffers_ == nullptr) {
-    throw std::bad_alloc();
-  }
-}
-
-PicturePool::~PicturePool() { av_buffer_pool_uninit(&buffers_); }
+    : width_(width), height_(height), format_(format) {}
 
 LibavFrame PicturePool::make() {
-  LibavFrame frame = make_libav_frame();
-  frame->width = width_;
-  frame->height = height_;
-  frame->format = format_;
-  frame->buf[0] = av_buffer_pool_get(buffers_);
-  if (frame->buf[0] == nullptr) {
-    throw std::bad_alloc();
+  const auto idle = std::ranges::find_if(
+      frames_, [](const LibavFrame& frame) { return av_frame_is_writable(frame.get()) != 0; });
+  if (idle != frames_.end()) {
+    return another_reference(**idle);
   }
-  av_image_fill_arrays(frame->data, frame->linesize, frame->buf[0]->data,
-                       static_cast<AVPixelFormat>(format_), width_, height_, kRowBytes);
-  return frame;
+  frames_.push_back(make_picture(width_, height_, format_));
+  return another_reference(*frames_.back());
 }
 
 }  // namespace vantage

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "engine/io/video/libav.h"
 
-struct AVBufferPool;
 struct AVPixFmtDescriptor;
 
 namespace vantage {
@@ -40,15 +41,11 @@ LibavScaler make_scaler(const ScalerOptions& options);
 /// A frame with allocated pixels. Throws std::bad_alloc.
 LibavFrame make_picture(int width, int height, int format);
 
-/// Frames of one kind, whose memory is used again when the last reference to it is gone; that may
-/// be after the pool. Thread rule: one thread at a time.
+/// Frames of one kind, whose memory is used again when the last reference to it is gone. Thread
+/// rule: one thread at a time.
 class PicturePool {
  public:
   PicturePool(int width, int height, int format);
-  PicturePool(const PicturePool&) = delete;
-  PicturePool& operator=(const PicturePool&) = delete;
-  ~PicturePool();
-
   /// Throws std::bad_alloc.
   LibavFrame make();
 
@@ -56,7 +53,7 @@ class PicturePool {
   int width_;
   int height_;
   int format_;
-  AVBufferPool* buffers_;
+  std::vector<LibavFrame> frames_;
 };
 
 }  // namespace vantage
