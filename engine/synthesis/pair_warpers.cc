@@ -148,9 +148,17 @@ int RowPairWarper<T>::blend(int y, const kernels::BlendWeights& weights, std::sp
                             float* memory, const kernels::BlendedRow<T>& view) const {
   const WarpedPairLayout at(width(), source_.left.channels());
   const std::array<SourceRow, 2> rows = source_rows(y, scratch);
-  return kernels::blend_fetched_row({.left = map_forward(rows[0], memory + at.left_nearness),
-                                     .right = map_forward(rows[1], memory + at.right_nearness)},
-                                    weights, view);
+  kernels::FetchedPairRow fetched{.left = map_forward(rows[0], memory + at.left_nearness),
+                                  .right = map_forward(rows[1], memory + at.right_nearness),
+                                  .next = {}};
+  if (y + 1 < height()) {
+    const auto bytes = static_cast<int>(sizeof(T)) * source_.left.channels();
+    fetched.next[0] = {source_.left.row(y + 1), bytes};
+    fetched.next[1] = {source_.right.row(y + 1), bytes};
+    fetched.next[2] = {source_.left_disparity.row(y + 1), sizeof(float)};
+    fetched.next[3] = {source_.right_disparity.row(y + 1), sizeof(float)};
+  }
+  return kernels::blend_fetched_row(fetched, weights, view);
 }
 
 // The warp moves whole rows of the rectified image, so positions there are exact columns of row y.

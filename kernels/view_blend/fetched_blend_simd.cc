@@ -1,5 +1,7 @@
 #include "kernels/simd-inl.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -12,6 +14,8 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace vantage::kernels::HWY_NAMESPACE {
+
+constexpr int kCacheLine = 64;
 
 // Values of one channel in the type of the pixels.
 template <typename T>
@@ -121,6 +125,12 @@ HWY_INLINE int blend_fetched_any(const FetchedPairRow& given, const BlendWeights
   pair.gradient_limit_px = fetched.left.gradient_limit_px;
   int holes = 0;
   for (int n = 0; n < width; n += kAtOnce) {
+    for (const FetchedPairRow::NextRow& next : fetched.next) {
+      const auto* values = static_cast<const std::uint8_t*>(next.values);
+      for (int i = 0; values != nullptr && i < kAtOnce * next.bytes_per_position; i += kCacheLine) {
+        hwy::Prefetch(values + n * next.bytes_per_position + i);
+      }
+    }
     if (n > 0 && n + kAtOnce < width) {
       holes += blend_positions<kChannels>(fetched, weights, n, pair, n, view,
                                           view.pixels + n * kChannels);

@@ -55,6 +55,12 @@ int blend_row(const WarpedPairRow& pair, const BlendWeights& weights, int channe
 struct FetchedPairRow {
   BicubicFetchRow left;
   BicubicFetchRow right;
+  /// Rows of the same width that are read next, brought into the cache meanwhile: rows of several
+  /// images in turn are no stream that a processor follows by itself. Null: none.
+  struct NextRow {
+    const void* values = nullptr;
+    int bytes_per_position = 0;
+  } next[4];
 };
 
 /// blend_row() of what fetch_bicubic_row() makes of both rows, without storing it in between.

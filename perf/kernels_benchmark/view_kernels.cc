@@ -184,7 +184,7 @@ struct FetchedBlend {
   AlignedValues<std::uint8_t> sources{kCount};
 
   void blend() {
-    kernels::blend_fetched_row({image.row(), image.row()}, {},
+    kernels::blend_fetched_row({image.row(), image.row(), {}}, {},
                                kernels::BlendedRow<std::uint8_t>{pixels.data(), disparity_px.data(),
                                                                  holes.data(), sources.data()});
   }

@@ -191,7 +191,7 @@ TYPED_TEST(ViewBlend, OfFetchedRowsIsThatOfStoredOnes) {
                       weights, channels, expected.row());
         for_each_target([&] {
           View<T> view(width, channels);
-          ASSERT_EQ(blend_fetched_row({left.row, right.row}, weights, view.row()), holes);
+          ASSERT_EQ(blend_fetched_row({left.row, right.row, {}}, weights, view.row()), holes);
           ASSERT_EQ(view.pixels, expected.pixels) << width << " wide, " << channels << " channels";
           ASSERT_EQ(view.holes, expected.holes);
           ASSERT_EQ(view.sources, expected.sources);
