@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -41,11 +42,20 @@ class ObjectPool {
   /// args: for the constructor of a new object.
   template <typename... Args>
   [[nodiscard]] Loan borrow(const Args&... args) {
+    return borrow_best([](const T& /*object*/) { return true; }, args...);
+  }
+  /// Of idle objects the one returned last that `suits`, else the one idle for longest.
+  template <typename Suits, typename... Args>
+  [[nodiscard]] Loan borrow_best(const Suits& suits, const Args&... args) {
     const std::lock_guard lock(mutex_);
     if (free_.empty()) {
       free_.reserve(++created_);  // so that returning an object cannot fail
       return {*this, std::make_unique<T>(args...)};
     }
+    const auto best = std::find_if(free_.rbegin(), free_.rend(),
+                                   [&suits](const auto& object) { return suits(*object); });
+    std::rotate(best == free_.rend() ? free_.begin() : best.base() - 1,
+                best == free_.rend() ? free_.begin() + 1 : best.base(), free_.end());
     std::unique_ptr<T> object = std::move(free_.back());
     free_.pop_back();
     return {*this, std::move(object)};

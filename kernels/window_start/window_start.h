@@ -11,7 +11,7 @@ namespace vantage::kernels {
 
 inline constexpr std::int16_t kNoSecondWinner = INT16_MIN;
 /// Coarse candidates by which a neighbour's winner must differ to be another surface's.
-inline constexpr int kOtherSurface = 2;
+inline constexpr int kOtherSurface = 3;
 
 /// A second winner for each column: the smallest winner of the 3×3 columns around it if that is
 /// kOtherSurface or more below the column's own, else the largest one if that is as much above it,

@@ -39,7 +39,8 @@ struct WindowPrior {
   WindowCells lanes = ~WindowCells{0};  ///< 255 for the lanes that are candidates
 };
 
-/// One row of an iteration. Columns outside the image must have support 0.
+/// One row of an iteration. Columns outside the image must have support 0. Columns 2i and 2i + 1,
+/// which one coarser column covers, have the same windows.
 struct WindowStepRow {
   WindowRow up, centre, down;
   std::array<const WindowCells*, kWindows> evidence = {};  ///< 0 for lanes that are no candidates

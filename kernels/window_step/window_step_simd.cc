@@ -30,6 +30,7 @@ static_assert(kColumns <= 8 && kColumns <= kWindowMargin);
 // 64-bit lanes.
 struct Distribution {
   alignas(64) std::uint8_t to_all_words[64];  // to each of a lane's four words
+  alignas(64) std::uint8_t of_odd[64];        // the same, to a pair of lanes its odd one's word
   alignas(64) std::uint8_t low_bytes[64];     // their low bytes, to all bytes of a lane
   alignas(64) std::uint8_t bytes[64];         // of eight bytes: to all bytes of a lane
   alignas(64) std::uint8_t candidates[64];    // no lookup: a lane's candidates
@@ -41,6 +42,7 @@ constexpr Distribution distribution() {
     for (int byte = 0; byte < 8; ++byte) {
       const auto at = static_cast<std::size_t>(8 * column + byte);
       to.to_all_words[at] = static_cast<std::uint8_t>(2 * column + byte % 2);
+      to.of_odd[at] = static_cast<std::uint8_t>(2 * (column | 1) + byte % 2);
       to.low_bytes[at] = static_cast<std::uint8_t>(2 * column);
       to.bytes[at] = static_cast<std::uint8_t>(column);
       to.candidates[at] = static_cast<std::uint8_t>(byte);
@@ -51,10 +53,12 @@ constexpr Distribution distribution() {
 }
 constexpr Distribution kTo = distribution();
 
-HWY_INLINE Vec16 words_of(const FixedWeight* values) {
+HWY_INLINE Vec16 distributed(VecS16 words, const std::uint8_t* places) {
   const Tag8 d8;
-  const Vec8 words = hn::BitCast(d8, hn::LoadDup128(TagS16(), values));
-  return hn::BitCast(Tag16(), hn::TableLookupBytes(words, hn::Load(d8, kTo.to_all_words)));
+  return hn::BitCast(Tag16(), hn::TableLookupBytes(hn::BitCast(d8, words), hn::Load(d8, places)));
+}
+HWY_INLINE Vec16 words_of(const FixedWeight* values) {
+  return distributed(hn::LoadDup128(TagS16(), values), kTo.to_all_words);
 }
 
 HWY_INLINE Vec64 mask_of(const std::uint8_t* bytes) {
@@ -63,21 +67,23 @@ HWY_INLINE Vec64 mask_of(const std::uint8_t* bytes) {
                      hn::TableLookupBytes(hn::LoadDup128(d8, bytes), hn::Load(d8, kTo.bytes)));
 }
 
-// Cells of windows that begin at `start`, moved to the lanes of windows that begin at `own`.
-HWY_INLINE Vec64 moved(Vec64 cells, const std::int16_t* start, VecS16 own) {
+// Table lookups that move cells of windows that begin at `start` to the lanes of windows that begin
+// at `own`.
+HWY_INLINE Vec8 move_between(VecS16 start, VecS16 own) {
   const Tag8 d8;
   const TagS16 ds16;
   // By whole windows and more: everything is moved out.
   const VecS16 limit = hn::Set(ds16, kWindowCandidates);
-  const VecS16 later =
-      hn::Min(hn::Max(hn::Sub(own, hn::LoadDup128(ds16, start)), hn::Neg(limit)), limit);
+  const VecS16 later = hn::Min(hn::Max(hn::Sub(own, start), hn::Neg(limit)), limit);
   const Vec8 from =
       hn::Add(hn::TableLookupBytes(hn::BitCast(d8, later), hn::Load(d8, kTo.low_bytes)),
               hn::Load(d8, kTo.candidates));
   // Sets the top bit of all but 0 to 7, which become 8 to 15.
   const Vec8 checked = hn::SaturatedAdd(from, hn::Set(d8, 0x78));
-  return hn::BitCast(Tag64(), hn::TableLookupBytesOr0(hn::BitCast(d8, cells),
-                                                      hn::Xor(checked, hn::Load(d8, kTo.upper))));
+  return hn::Xor(checked, hn::Load(d8, kTo.upper));
+}
+HWY_INLINE Vec64 moved(Vec64 cells, Vec8 move) {
+  return hn::BitCast(Tag64(), hn::TableLookupBytesOr0(hn::BitCast(Tag8(), cells), move));
 }
 
 struct Totals {
@@ -119,7 +125,7 @@ HWY_INLINE Vec16 max_of_lane(Vec16 words) {
 #endif
 }
 
-// T of kColumns columns. kBoth: neighbours may have second windows.
+// T of kColumns columns, the first one even. kBoth: neighbours may have second windows.
 template <bool kBoth>
 class ColumnTotals {
  public:
@@ -127,55 +133,90 @@ class ColumnTotals {
       : row_(row),
         x_(x),
         mu_(hn::Set(Tag16(), static_cast<std::uint16_t>(row.mu))),
-        left_(words_of(row.beside + x)),
-        right_(words_of(row.beside + x + 1)),
+        inner_(distributed(hn::LoadDup128(TagS16(), row.beside + x), kTo.of_odd)),
+        outer_(distributed(hn::OddEven(hn::LoadDup128(TagS16(), row.beside + x + 1),
+                                       hn::LoadDup128(TagS16(), row.beside + x)),
+                           kTo.to_all_words)),
         up_(words_of(row.above + x)),
         down_(words_of(row.below + x)),
         up_is_alike_(row.up.start == row.centre.start),
         down_is_alike_(row.down.start == row.centre.start) {}
 
   [[nodiscard]] HWY_INLINE Totals of(std::size_t window) const {
+    const TagS16 ds16;
     Totals totals = evidence_of(row_.evidence[window] + x_);
-    const VecS16 own = hn::LoadDup128(TagS16(), row_.centre.start[window] + x_);
-    add(alike_support(row_.centre, window, own), mu_, totals);
-    add(support(row_.centre, x_ - 1, own), left_, totals);
-    add(support(row_.centre, x_ + 1, own), right_, totals);
-    add(up_is_alike_ ? alike_support(row_.up, window, own) : support(row_.up, x_, own), up_,
-        totals);
-    add(down_is_alike_ ? alike_support(row_.down, window, own) : support(row_.down, x_, own), down_,
-        totals);
+    const VecS16 own = hn::LoadDup128(ds16, row_.centre.start[window] + x_);
+    const Vec8 from_other =
+        kBoth ? move_between(hn::LoadDup128(ds16, row_.centre.start[1 - window] + x_), own)
+              : hn::Zero(Tag8());
+    const Vec64 centre = alike_support(row_.centre, window, from_other);
+    add(centre, mu_, totals);
+    // Of the columns beside one, that of its pair has the same windows.
+    add(hn::Shuffle01(centre), inner_, totals);
+    add(support<true>(row_.centre, own), outer_, totals);
+    add(up_is_alike_ ? alike_support(row_.up, window, from_other) : support<false>(row_.up, own),
+        up_, totals);
+    add(down_is_alike_ ? alike_support(row_.down, window, from_other)
+                       : support<false>(row_.down, own),
+        down_, totals);
     return totals;
   }
 
  private:
-  [[nodiscard]] static HWY_INLINE Vec64 support(const WindowRow& row, int x, VecS16 own) {
-    const Vec64 first = moved(hn::LoadU(Tag64(), row.support[0] + x), row.start[0] + x, own);
-    return kBoth ? larger(first, row, 1, x, own) : first;
+  // Of the columns themselves, or of those beside their pairs.
+  template <bool kBeside>
+  [[nodiscard]] HWY_INLINE Vec64 cells_of(const WindowRow& row, std::size_t window) const {
+    const WindowCells* const cells = row.support[window] + x_;
+    const Tag64 d64;
+    return kBeside ? hn::OddEven(hn::LoadU(d64, cells + 1), hn::LoadU(d64, cells - 1))
+                   : hn::LoadU(d64, cells);
+  }
+  template <bool kBeside>
+  [[nodiscard]] HWY_INLINE Vec64 moved_cells(const WindowRow& row, std::size_t window, Vec64 cells,
+                                             VecS16 own) const {
+    const std::int16_t* const start = row.start[window] + x_;
+    const TagS16 ds16;
+    return moved(cells, move_between(kBeside ? hn::OddEven(hn::LoadDup128(ds16, start + 1),
+                                                           hn::LoadDup128(ds16, start - 1))
+                                             : hn::LoadDup128(ds16, start),
+                                     own));
+  }
+  template <bool kBeside>
+  [[nodiscard]] HWY_INLINE Vec64 support(const WindowRow& row, VecS16 own) const {
+    const Vec64 first = moved_cells<kBeside>(row, 0, cells_of<kBeside>(row, 0), own);
+    if constexpr (kBoth) {
+      const Vec64 second = cells_of<kBeside>(row, 1);
+      if (!is_zero(second)) {
+        return larger(first, moved_cells<kBeside>(row, 1, second, own));
+      }
+    }
+    return first;
   }
   // Same for rows whose windows begin where those of the centre do: that of `window` is not moved.
   [[nodiscard]] HWY_INLINE Vec64 alike_support(const WindowRow& row, std::size_t window,
-                                               VecS16 own) const {
-    const Vec64 same = hn::LoadU(Tag64(), row.support[window] + x_);
-    return kBoth ? larger(same, row, 1 - window, x_, own) : same;
-  }
-  // The larger of `cells` and the support of a window.
-  [[nodiscard]] static HWY_INLINE Vec64 larger(Vec64 cells, const WindowRow& row,
-                                               std::size_t window, int x, VecS16 own) {
-    const Tag64 d64;
-    const Tag8 d8;
-    const Vec64 other = hn::LoadU(d64, row.support[window] + x);
-    if (hn::AllTrue(d64, hn::Eq(other, hn::Zero(d64)))) {
-      return cells;
+                                               Vec8 from_other) const {
+    const Vec64 same = cells_of<false>(row, window);
+    if constexpr (kBoth) {
+      const Vec64 other = cells_of<false>(row, 1 - window);
+      if (!is_zero(other)) {
+        return larger(same, moved(other, from_other));
+      }
     }
-    const Vec64 there = moved(other, row.start[window] + x, own);
-    return hn::BitCast(d64, hn::Max(hn::BitCast(d8, cells), hn::BitCast(d8, there)));
+    return same;
+  }
+  static HWY_INLINE bool is_zero(Vec64 cells) {
+    return hn::AllTrue(Tag64(), hn::Eq(cells, hn::Zero(Tag64())));
+  }
+  static HWY_INLINE Vec64 larger(Vec64 cells, Vec64 others) {
+    const Tag8 d8;
+    return hn::BitCast(Tag64(), hn::Max(hn::BitCast(d8, cells), hn::BitCast(d8, others)));
   }
 
   const WindowStepRow& row_;
   int x_;
   Vec16 mu_;
-  Vec16 left_;
-  Vec16 right_;
+  Vec16 inner_;
+  Vec16 outer_;
   Vec16 up_;
   Vec16 down_;
   bool up_is_alike_;

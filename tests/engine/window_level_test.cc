@@ -5,6 +5,7 @@
 #include "kernels/candidate_windows.h"
 #include "kernels/census/census.h"
 #include "kernels/intensity_diffusion/intensity_diffusion.h"
+#include "kernels/window_start/window_start.h"
 #include "tests/engine/engine_test.h"
 
 namespace vantage::window_level_test {
@@ -190,10 +191,10 @@ class PlainLevel {
         max = std::max(max, coarse_.winner(x + u, y + v));
       }
     }
-    if (own - min >= 2) {
+    if (own - min >= kernels::kOtherSurface) {
       return {own, min};
     }
-    return max - own >= 2 ? std::vector<int>{own, max} : std::vector<int>{own};
+    return max - own >= kernels::kOtherSurface ? std::vector<int>{own, max} : std::vector<int>{own};
   }
 
   [[nodiscard]] bool has_partners(int x, int candidate) const {
@@ -318,30 +319,38 @@ class PlainLevel {
     return max;
   }
 
+  /// Even rows, then odd ones, which read them.
   void iterate() {
-    std::vector<Pixel> next;
-    for (const auto [x, y] : positions_of(columns_, rows_)) {
-      const Pixel of_pixel = totals(x, y);
-      const int max = max_of(of_pixel);
-      Pixel pixel;
-      for (const Window& window : of_pixel) {
-        Window smoothed;
-        for (const auto& [candidate, total] : window) {
-          int best = total;
-          for (const auto& [other, of_other] : window) {
-            const double k = (candidate - other) / parameters_.sigma_prior;
-            const int rise = static_cast<int>(std::nearbyint(4 * steps_ * k * k / 2));
-            if (rise < 4 * ceiling_) {
-              best = std::max(best, of_other - rise);
-            }
-          }
-          smoothed[candidate] = (std::max(0, best - max + 4 * ceiling_) + 2) / 4;
+    for (const int parity : {0, 1}) {
+      std::vector<Pixel> next = pixels_;
+      for (int y = parity; y < rows_; y += 2) {
+        for (int x = 0; x < columns_; ++x) {
+          next[static_cast<std::size_t>(y * columns_ + x)] = smoothed(totals(x, y));
         }
-        pixel.push_back(smoothed);
       }
-      next.push_back(pixel);
+      pixels_ = std::move(next);
     }
-    pixels_ = std::move(next);
+  }
+
+  [[nodiscard]] Pixel smoothed(const Pixel& totals) const {
+    const int max = max_of(totals);
+    Pixel pixel;
+    for (const Window& window : totals) {
+      Window smoothed;
+      for (const auto& [candidate, total] : window) {
+        int best = total;
+        for (const auto& [other, of_other] : window) {
+          const double k = (candidate - other) / parameters_.sigma_prior;
+          const int rise = static_cast<int>(std::nearbyint(4 * steps_ * k * k / 2));
+          if (rise < 4 * ceiling_) {
+            best = std::max(best, of_other - rise);
+          }
+        }
+        smoothed[candidate] = (std::max(0, best - max + 4 * ceiling_) + 2) / 4;
+      }
+      pixel.push_back(smoothed);
+    }
+    return pixel;
   }
 
   [[nodiscard]] float winner(int x, int y) const {
@@ -399,7 +408,7 @@ MethodParameters parameters_of(int number) {
   parameters.mu = 0.3;
   parameters.edge_weight = number % 3 == 1 ? 1 : 0.2;
   parameters.edge_diffusion = number % 2 == 0 ? 2 : 0;
-  parameters.iterations = 1 + number % 3;
+  parameters.iterations = 1 + number % 4;
   return parameters;
 }
 

@@ -29,7 +29,7 @@ struct StepCase {
   std::array<std::vector<FixedWeight>, 3> weights;
   WindowStepRow row;
 
-  /// seconds: one of so many columns has a second window; 0: none.
+  /// seconds: one of so many pairs of columns has a second window; 0: none.
   StepCase(std::mt19937& random, int columns, int seconds, int max, WindowPrior prior) {
     const auto size = static_cast<std::size_t>(columns) + 2 * kBefore;
     std::array<std::vector<std::uint8_t>, 3> exists;
@@ -40,12 +40,17 @@ struct StepCase {
         rows[r].start[q].resize(size);
       }
       for (std::size_t x = kBefore; x < kBefore + static_cast<std::size_t>(columns); ++x) {
-        exists[r][x] = seconds > 0 && random() % static_cast<unsigned>(seconds) == 0 ? 255 : 0;
+        const bool is_left = x % 2 == 0;  // of a pair, which has the same windows
+        exists[r][x] = !is_left ? exists[r][x - 1]
+                       : seconds > 0 && random() % static_cast<unsigned>(seconds) == 0 ? 255
+                                                                                       : 0;
         for (std::size_t q = 0; q < kWindows; ++q) {
           rows[r].support[q][x] = q == 0 || exists[r][x] != 0 ? random_cells(random, max) : 0;
-          rows[r].start[q][x] = static_cast<std::int16_t>(random_int(random, 0, 1) == 0
-                                                              ? random_int(random, 40, 44)
-                                                              : random_int(random, 0, 4000));
+          rows[r].start[q][x] = !is_left
+                                    ? rows[r].start[q][x - 1]
+                                    : static_cast<std::int16_t>(random_int(random, 0, 1) == 0
+                                                                    ? random_int(random, 40, 44)
+                                                                    : random_int(random, 0, 4000));
         }
       }
     }

@@ -23,7 +23,8 @@ MethodOverrides coarse_to_fine() {
 }
 
 /// What a codec rounded is alike in pixels beside each other: their costs agree by chance, and
-/// small parts differ from what is around them. Chosen in perf/log/2026-11-27-noise.md.
+/// small parts differ from what is around them. Chosen in perf/log/2026-11-27-noise.md and
+/// 2026-11-28-search.md.
 void set_for_noise(MatchPreset preset, NoiseKind kind, MethodOverrides& parameters) {
   const bool is_coded = kind == NoiseKind::kCodec;
   if (is_coded) {
@@ -33,12 +34,11 @@ void set_for_noise(MatchPreset preset, NoiseKind kind, MethodOverrides& paramete
     parameters.slant_penalty = 1;
   }
   if (preset == MatchPreset::kRealtime) {
-    parameters.mu = 0.33;
-    parameters.iterations = 4;
-    parameters.final_iterations = 5;
+    parameters.mu = is_coded ? 0.3 : 0.33;
+    parameters.iterations = is_coded ? 3 : 4;
+    parameters.final_iterations = is_coded ? 3 : 4;
   } else if (preset == MatchPreset::kQuality && is_coded) {
     parameters.iterations = 5;
-    parameters.final_iterations = 3;
   }
 }
 
@@ -83,7 +83,7 @@ PresetSettings preset_settings(MatchPreset preset, NoiseKind kind) {
       settings.parameters.census_thresholds = 3;
       settings.parameters.mu = 0.33;
       settings.parameters.iterations = 10;
-      settings.parameters.final_iterations = 5;
+      settings.parameters.final_iterations = 3;
       settings.refinement.fill = Fill::kMedian;
       break;
   }

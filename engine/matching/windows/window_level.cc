@@ -41,10 +41,15 @@ struct Level {
   int iterations;
 };
 
+/// Iterations before the last one, which selects.
+int steps_of(int iterations) { return iterations - 1; }
 /// Columns around those of a result that its iterations read, one more than iterations make wrong.
 int halo_columns(int iterations) { return iterations + 1; }
+/// Rows likewise: those of each step read two.
+int halo_rows(int iterations) { return 2 * steps_of(iterations) + 1; }
 
-/// One region of a level, swept by all iterations as a wavefront. Each iteration makes the
+/// One region of a level, swept by all iterations as a wavefront of pairs of rows, those that a
+/// coarse row covers. A region below the last one continues its sweep. Each iteration makes the
 /// outermost columns of its halo wrong; nothing of the halo is in the result.
 class Band {
  public:
@@ -52,8 +57,11 @@ class Band {
       : level_(level),
         starter_(level.input.coarse, level.input.spacing, level.input.geometry.disparity_min,
                  level.input.geometry.count, level.prior, level.format.nats_per_step()),
-        starts_(level.iterations + 4, level.columns),
-        evidence_(level.iterations, level.columns),
+        steps_(steps_of(level.iterations)),
+        starts_(steps_ + 4, level.columns),
+        evidence_(2 * (steps_ + 1), level.columns),
+        states_(2 * steps_ + 3, level.columns),
+        state_(level.columns),
         absent_(level.columns),
         selectable_(level.columns),
         window_(level.columns),
@@ -63,9 +71,6 @@ class Band {
         total_after_(level.columns),
         support_(level.columns),
         uniform_(level.columns) {
-    for (int i = 1; i < level.iterations; ++i) {
-      states_.emplace_back(3, level.columns);
-    }
     mu_ = kernels::fixed_weight(static_cast<float>(level.input.parameters.mu));
     std::fill_n(uniform_.data(), level.columns + 1, mu_);
     for (auto& selectable : selectable_.cells) {
@@ -73,52 +78,62 @@ class Band {
     }
   }
 
+  /// Whether `region` lies directly below the last one.
+  [[nodiscard]] bool continues_at(const Region& region) const {
+    return region.rows.begin == end_ && end_ % 2 == 0 && region.columns == result_;
+  }
+
   void run(const Region& region) {
     const Range rows = region.rows;
-    result_ = region.columns;
-    columns_ = region.columns.widened(halo_columns(level_.iterations), {0, level_.columns});
-    columns_.begin -= columns_.begin % 2;  // at a coarse column
-    const int halo = level_.iterations - 1;
-    const Range all{0, level_.rows};
-    coarse_end_ = std::max(0, (rows.begin - halo - 1) / 2 - 1);
-    marked_ = -1;
-    for (int y = rows.begin - halo; y < rows.end + halo; ++y) {
-      if (y >= 0 && y < level_.rows) {
-        prepare_starts(y);
-        level_.evidence.make_row(y, columns_, starts_.at(y / 2), evidence_.at(y));
+    const int first_pair = rows.begin / 2;
+    const int end_pair = (rows.end + 1) / 2;
+    if (!continues_at(region)) {
+      result_ = region.columns;
+      columns_ = region.columns.widened(halo_columns(level_.iterations), {0, level_.columns});
+      columns_.begin -= columns_.begin % 2;  // at a coarse column
+      first_pair_ = first_pair;
+      next_pair_ = std::max(0, first_pair - steps_);
+      coarse_end_ = std::max(0, next_pair_ - 1);
+    }
+    end_ = rows.end;
+    for (; next_pair_ < end_pair + steps_; ++next_pair_) {
+      if (2 * next_pair_ < level_.rows) {
+        prepare_pair(next_pair_);
       }
-      for (int i = 1; i < level_.iterations; ++i) {
-        const int of_iteration = y - (i - 1);
-        // Rows that later iterations of the band read.
-        if (rows.widened(level_.iterations - i, all).contains({of_iteration, of_iteration + 1})) {
-          kernels::window_step_row(
-              step_row(of_iteration, columns_, i),
-              from(columns_, states_[static_cast<std::size_t>(i - 1)].at(of_iteration).data()));
-        }
+      for (int i = 1; i <= steps_; ++i) {
+        make_row(2 * (next_pair_ - i + 1), i);
+        make_row(2 * (next_pair_ - i) + 1, i);
       }
-      const int finished = y - halo;
-      if (finished >= rows.begin && finished < rows.end) {
-        select(finished);
+      const int finished = 2 * (next_pair_ - steps_);
+      for (int y = std::max(rows.begin, finished); y < std::min(rows.end, finished + 2); ++y) {
+        select(y);
       }
     }
   }
 
  private:
-  /// Coarse rows up to the one below that of row y.
-  void prepare_starts(int y) {
+  /// The windows of a pair's rows and their evidence.
+  void prepare_pair(int pair) {
     const int coarse_rows = level_.input.coarse.extent().rows;
-    const int end = std::min(y / 2 + 2, coarse_rows);
-    for (; coarse_end_ < end; ++coarse_end_) {
+    for (; coarse_end_ < std::min(pair + 2, coarse_rows); ++coarse_end_) {
       starter_.make_row(coarse_end_, columns_, starts_.at(coarse_end_));
     }
-    const int own = y / 2;
-    if (own == marked_) {
+    WindowStartRow& starts = starts_.at(pair);
+    WindowStarter::mark_near(pair > 0 ? &starts_.at(pair - 1) : nullptr,
+                             pair + 1 < coarse_rows ? &starts_.at(pair + 1) : nullptr, columns_,
+                             starts);
+    for (int y = 2 * pair; y < std::min(2 * pair + 2, level_.rows); ++y) {
+      level_.evidence.make_row(y, columns_, starts, evidence_.at(y));
+    }
+  }
+
+  /// Row y after step `step`, if later ones read it. Even rows come first and are read by odd ones.
+  void make_row(int y, int step) {
+    if (y < 0 || y >= level_.rows || y / 2 < first_pair_ - 1 - steps_ + step) {
       return;
     }
-    marked_ = own;
-    WindowStarter::mark_near(own > 0 ? &starts_.at(own - 1) : nullptr,
-                             own + 1 < coarse_rows ? &starts_.at(own + 1) : nullptr, columns_,
-                             starts_.at(own));
+    kernels::window_step_row(step_row(y, columns_, step), from(columns_, state_.data()));
+    std::swap(state_, states_.at(y));
   }
 
   /// Both windows' values from the first of `columns` on.
@@ -127,25 +142,26 @@ class Band {
     return {values[0] + columns.begin, values[1] + columns.begin};
   }
 
-  /// Columns `columns` of row y as iteration `iteration`, 1 being the first, reads it.
-  kernels::WindowRow windows(int y, Range columns, int iteration) {
+  /// Columns `columns` of row y. is_start: before the first step.
+  kernels::WindowRow windows(int y, Range columns, bool is_start) {
     if (y < 0 || y >= level_.rows) {
       const auto absent = from(columns, absent_.data());
       return {.support = {absent[0], absent[1]},
               .start = from(columns, starts_.at(std::max(y, 0) / 2).starts())};
     }
     WindowStartRow& starts = starts_.at(y / 2);
-    const auto support = from(
-        columns, iteration == 1 ? starts.support.data()
-                                : states_[static_cast<std::size_t>(iteration - 2)].at(y).data());
+    const auto support = from(columns, is_start ? starts.support.data() : states_.at(y).data());
     return {.support = {support[0], support[1]}, .start = from(columns, starts.starts())};
   }
 
   kernels::WindowStepRow step_row(int y, Range columns, int iteration) {
     kernels::WindowStepRow row;
-    row.up = windows(y - 1, columns, iteration);
-    row.centre = windows(y, columns, iteration);
-    row.down = windows(y + 1, columns, iteration);
+    const bool is_selected = iteration == level_.iterations;
+    const bool is_first = iteration == 1;
+    const bool reads_start = is_first && (is_selected || y % 2 == 0);
+    row.up = windows(y - 1, columns, reads_start);
+    row.centre = windows(y, columns, is_first);
+    row.down = windows(y + 1, columns, reads_start);
     const auto evidence = from(columns, evidence_.at(y).data());
     row.evidence = {evidence[0], evidence[1]};
     const WindowStartRow& starts = starts_.at(y / 2);
@@ -166,36 +182,41 @@ class Band {
 
   /// The last iteration of row y, and its winners.
   void select(int y) {
-    const kernels::WindowStepRow row = step_row(y, result_, level_.iterations);
+    // Pairs of columns have the same windows.
+    const Range pairs{result_.begin / 2 * 2, result_.end};
+    const kernels::WindowStepRow row = step_row(y, pairs, level_.iterations);
     const WindowStartRow& starts = starts_.at(y / 2);
     const bool needs_support = level_.output.state != nullptr || !level_.output.confidence.empty();
-    const int first = result_.begin;
-    kernels::WindowWinners winners{.window = window_.data() + first,
-                                   .lane = lane_.data() + first,
-                                   .total = total_.data() + first,
-                                   .total_before = total_before_.data() + first,
-                                   .total_after = total_after_.data() + first,
-                                   .support = needs_support ? support_.data() + first : nullptr};
+    const auto winners_from = [&](int x) {
+      return kernels::WindowWinners{.window = window_.data() + x,
+                                    .lane = lane_.data() + x,
+                                    .total = total_.data() + x,
+                                    .total_before = total_before_.data() + x,
+                                    .total_after = total_after_.data() + x,
+                                    .support = needs_support ? support_.data() + x : nullptr};
+    };
+    kernels::WindowWinners winners = winners_from(pairs.begin);
     const auto selectable = selectable_.data();
     if (!level_.evidence.has_all_partners()) {
       // Set to all at first; only outer columns change.
-      level_.evidence.for_each_outer_column(result_, [&](int x) {
+      level_.evidence.for_each_outer_column(pairs, [&](int x) {
         for (std::size_t q = 0; q < kWindows; ++q) {
           selectable[q][x] = level_.evidence.with_partner(x, starts.start[q].data()[x]);
         }
       });
-      winners.selectable = {selectable[0] + first, selectable[1] + first};
+      winners.selectable = {selectable[0] + pairs.begin, selectable[1] + pairs.begin};
     }
     kernels::window_winners_row(row, winners);
+    const kernels::WindowWinners of_result = winners_from(result_.begin);
     float* const disparity_px = level_.output.disparity_px.row(y);
     kernels::window_disparity_row(
-        {.winners = &winners,
+        {.winners = &of_result,
          .start = from(result_, starts.starts()),
          .disparity_min = level_.input.geometry.disparity_min,
          .candidates = std::min(kWindowCandidates, level_.input.geometry.count),
          .is_refined = level_.subpixel == Subpixel::kParabola,
          .columns = result_.size()},
-        disparity_px + first);
+        disparity_px + result_.begin);
     level_.evidence.for_each_outer_column(result_, [&](int x) {
       if (window_.data()[x] != kernels::kNoWindow && !has_partners_beside(x)) {
         disparity_px[x] =
@@ -256,12 +277,16 @@ class Band {
   Range result_;   ///< columns of the region
   Range columns_;  ///< and of its halo
   WindowStarter starter_;
+  int steps_;
   RowRing<WindowStartRow> starts_;  ///< of coarse rows
   int coarse_end_ = 0;              ///< coarse rows before this one are made
-  int marked_ = -1;                 ///< last coarse row with near_second
+  int first_pair_ = 0;              ///< of the sweep
+  int next_pair_ = 0;
+  int end_ = -1;  ///< of the last region's rows
   RowRing<WindowCellsRow> evidence_;
-  std::vector<RowRing<WindowCellsRow>> states_;  ///< after each iteration but the last
-  WindowCellsRow absent_;                        ///< of rows outside the image
+  RowRing<WindowCellsRow> states_;  ///< after the last step that made each row
+  WindowCellsRow state_;            ///< the next one of a row
+  WindowCellsRow absent_;           ///< of rows outside the image
   WindowCellsRow selectable_;
   WindowValues<std::uint8_t> window_;
   WindowValues<std::uint8_t> lane_;
@@ -294,7 +319,8 @@ kernels::CandidateGeometry window_margins(kernels::CandidateGeometry geometry) {
 }
 
 int coarse_reach(int iterations) {
-  return (halo_columns(iterations) + 1) / 2 + 2;  // and neighbours of coarse pixels, and theirs
+  // And neighbours of coarse pixels, and theirs.
+  return (std::max(halo_columns(iterations), halo_rows(iterations)) + 1) / 2 + 2;
 }
 
 void search_windows(const WindowLevelInput& input, Subpixel subpixel,
@@ -321,7 +347,9 @@ void search_windows(const WindowLevelInput& input, Subpixel subpixel,
   const std::vector<Region> regions = output.regions != nullptr ? *output.regions : bands_of(level);
   ObjectPool<Band> bands;
   execution.executor().parallel_for(static_cast<int>(regions.size()), [&](int task) {
-    bands.borrow(level)->run(regions[static_cast<std::size_t>(task)]);
+    const Region& region = regions[static_cast<std::size_t>(task)];
+    bands.borrow_best([&](const Band& band) { return band.continues_at(region); }, level)
+        ->run(region);
   });
 }
 
