@@ -163,16 +163,6 @@ std::string parts(const ThreadCountProfile& count) {
   return text;
 }
 
-std::string workers(const ThreadCountProfile& count) {
-  TextTable table("Threads of the run with the median wall time", {"", "work", "waiting", ""});
-  for (const ThreadProfile& worker : count.workers) {
-    table.add({worker.name, quantity_text(worker.work_s, "s"),
-               worker.is_in_pool ? quantity_text(worker.wait_s, "s") : kUnknown,
-               worker.is_in_pool ? "" : "beside the pool"});
-  }
-  return table.empty() ? "" : "\n" + table.text();
-}
-
 std::string memory(const Profile& profile) {
   TextTable table(fmt::format("Memory: {} at the peak",
                               quantity_text(static_cast<double>(profile.peak_memory_bytes), "B")),
@@ -212,7 +202,7 @@ std::string describe(const Profile& profile) {
                      profile.processor, profile.isa, profile.version, max.runs,
                      max.runs == 1 ? "" : "s") +
          advice(profile) + findings(profile) + scaling(profile) + growth(profile) +
-         stages(profile, max) + parts(max) + workers(max) + ceilings(profile) + memory(profile);
+         stages(profile, max) + parts(max) + ceilings(profile) + memory(profile);
 }
 
 }  // namespace vantage::apps
