@@ -15,12 +15,12 @@ namespace vantage::kernels {
 void chroma_columns(const std::uint8_t* samples, int count, std::int32_t* columns);
 
 /// Four rows of chroma_columns(), around a row of pixels, from above; and what they weigh of 2^12.
-using ChromaRows = std::array<const std::int32_t*, 4>;
+using ChromaSourceRows = std::array<const std::int32_t*, 4>;
 using ChromaWeights = std::array<std::int32_t, 4>;
 
 /// chroma[x] = the sum of weights[k] · rows[k][x] / 2^15, rounded and clamped to 0..65535, x in
 /// [0, width). Weights add up to 2^12, negative ones to −512 at least.
-void chroma_row(const ChromaRows& rows, const ChromaWeights& weights, int width,
+void chroma_row(const ChromaSourceRows& rows, const ChromaWeights& weights, int width,
                 std::uint16_t* chroma);
 
 /// For a row of pixels above its nearest row of samples, rows[2]; below it (rows[1]) in reverse.

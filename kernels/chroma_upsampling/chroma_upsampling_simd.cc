@@ -41,7 +41,8 @@ void columns(const std::uint8_t* samples, int count, std::int32_t* columns) {
   }
 }
 
-void row(const ChromaRows& rows, const ChromaWeights& weights, int width, std::uint16_t* chroma) {
+void row(const ChromaSourceRows& rows, const ChromaWeights& weights, int width,
+         std::uint16_t* chroma) {
   const hn::ScalableTag<std::int32_t> d;
   const hn::Rebind<std::int16_t, decltype(d)> d16;
   const hn::RebindToUnsigned<decltype(d16)> d_result;
@@ -79,7 +80,7 @@ void chroma_columns(const std::uint8_t* samples, int count, std::int32_t* result
   HWY_DYNAMIC_DISPATCH(columns)(samples, count, result);
 }
 
-void chroma_row(const ChromaRows& rows, const ChromaWeights& weights, int width,
+void chroma_row(const ChromaSourceRows& rows, const ChromaWeights& weights, int width,
                 std::uint16_t* chroma) {
   HWY_DYNAMIC_DISPATCH(row)(rows, weights, width, chroma);
 }

@@ -49,8 +49,8 @@ TEST_P(ChromaUpsampling, RowsAreTheCubic) {
         memory.back()[x] = random() % 8 == 0 ? (1 << 19) - 1 : memory.back()[x];
       }
     }
-    const ChromaRows rows = {memory[0].data(), memory[1].data(), memory[2].data(),
-                             memory[3].data()};
+    const ChromaSourceRows rows = {memory[0].data(), memory[1].data(), memory[2].data(),
+                                   memory[3].data()};
     for (const bool is_below : {false, true}) {
       ChromaWeights weights = kChromaWeights;
       if (is_below) {

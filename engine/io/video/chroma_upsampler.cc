@@ -64,7 +64,7 @@ kernels::LumaChromaRow ChromaUpsampler::next_row() {
     luma_16[x] = static_cast<std::uint16_t>(luma[x] << 8);
   }
   for (int plane = 1; plane <= 2; ++plane) {
-    kernels::ChromaRows rows;
+    kernels::ChromaSourceRows rows;
     for (int k = 0; k < 4; ++k) {
       rows[static_cast<std::size_t>(k)] = columns(plane, std::clamp(first + k, 0, chroma_rows - 1));
     }
