@@ -26,7 +26,8 @@ py::array to_array(const py::object& object, const std::string& name) {
     throw py::type_error(fmt::format("{} is of type {}, expected a NumPy array", name,
                                      std::string(py::str(py::type::of(object).attr("__name__")))));
   }
-  return py::array::ensure(object);
+  // Throws what the object's __array__ raises: a tensor on a GPU, or one with gradients.
+  return py::module_::import("numpy").attr("asarray")(object);
 }
 
 std::string shape_text(const py::array& array) {
@@ -99,7 +100,7 @@ py::array array_of_pixels(const py::object& object, const std::string& name) {
 /// A copy, converted to T.
 template <typename T>
 Image<T> image_of(const py::array& array) {
-  const auto values = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
+  const py::array_t<T, py::array::c_style | py::array::forcecast> values(array);
   const auto width = static_cast<int>(array.shape(1));
   const auto height = static_cast<int>(array.shape(0));
   return Image<T>::copy_of({values.data(), width, height, 1, static_cast<std::size_t>(width)});

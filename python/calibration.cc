@@ -45,7 +45,7 @@ py::array_t<double> numbers_of(const py::object& object, const char* name, const
                                  std::string(py::str(py::type::of(object).attr("__name__"))),
                                  expected));
   }
-  return Numbers::ensure(array);
+  return Numbers(array);
 }
 
 Matrix matrix_of(const py::object& object, const char* name) {

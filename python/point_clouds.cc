@@ -61,7 +61,7 @@ std::vector<T> values_of(const py::object& object, const char* name, py::ssize_t
     throw UsageError(fmt::format("{}: the array is of {}, expected {}", name,
                                  std::string(py::str(array.dtype())), type));
   }
-  const auto packed = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
+  const py::array_t<T, py::array::c_style | py::array::forcecast> packed(array);
   return {packed.data(), packed.data() + packed.size()};
 }
 

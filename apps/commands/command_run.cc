@@ -23,6 +23,7 @@
 #include "engine/error.h"
 #include "engine/image/memory_use.h"
 #include "engine/io/images/picture_window.h"
+#include "engine/sequence/journal/leftovers.h"
 #include "engine/sequence/journal/sequence_join.h"
 #include "engine/simd.h"
 
@@ -131,6 +132,9 @@ int command_run(const Arguments& arguments) {
     return run_to_stream(job, session, execution, report);
   }
   const SequenceLayout layout(job.output, job.sequence);
+  if (!job.overwrite) {
+    require_no_foreign_files(layout);
+  }
   RunJournal journal(layout.journal_folder(), session.identity, opening_of(job),
                      RunSession::part_name(job));
   const std::atomic<bool>& interrupted = interrupt_flag();

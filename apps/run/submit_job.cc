@@ -22,6 +22,7 @@
 #include "engine/io/files/json_text.h"
 #include "engine/options/setting_value.h"
 #include "engine/quoted_text.h"
+#include "engine/sequence/journal/leftovers.h"
 #include "engine/sequence/journal/run_journal.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/simd.h"
@@ -188,6 +189,9 @@ std::string submit(const std::vector<std::string>& options, const fs::path& scri
 /// Refuses the folder of another run here, instead of in every task.
 void prepare_journal(const RunJob& run, const RunSession& session, JournalOpening opening) {
   const SequenceLayout layout(run.output, run.sequence);
+  if (opening != JournalOpening::kOverwrite) {
+    require_no_foreign_files(layout);
+  }
   if (opening != JournalOpening::kResume || RunJournal::is_present(layout.journal_folder())) {
     const RunJournal journal(layout.journal_folder(), session.identity, opening, "submit");
   }

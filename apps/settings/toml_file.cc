@@ -48,6 +48,32 @@ SettingValue from_toml(const toml::node& node, const std::string& path, std::str
       path, node.source().begin.line, quotable(key)));
 }
 
+/// Whether a key has more parts than tables may be deep: the library goes down one table after the
+/// other, without a limit. Texts and comments do not count.
+bool has_too_deep_key(std::string_view text) {
+  constexpr int kMaxLevels = 64;
+  int dots = 0;
+  char quote = 0;
+  bool in_comment = false;
+  for (std::size_t i = 0; i < text.size() && dots < kMaxLevels; ++i) {
+    const char c = text[i];
+    if (in_comment || quote != 0) {
+      i += quote == '"' && c == '\\' ? 1 : 0;
+      quote = c == quote ? 0 : quote;
+      in_comment = in_comment && c != '\n';
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (c == '#') {
+      in_comment = true;
+    } else if (c == '.') {
+      ++dots;
+    } else if (std::string_view("=,[{\n").find(c) != std::string_view::npos) {
+      dots = 0;
+    }
+  }
+  return dots == kMaxLevels;
+}
+
 SettingValue read_file(const std::string& path, std::string_view expected, Tables tables) {
   std::ifstream file(path, std::ios::binary);
   file.peek();  // a folder opens like a file and fails here
@@ -56,8 +82,11 @@ SettingValue read_file(const std::string& path, std::string_view expected, Table
   }
   std::ostringstream content;
   content << file.rdbuf();
+  if (has_too_deep_key(content.view())) {
+    throw UsageError(fmt::format("{}: a key has more than 64 parts, expected {}", path, expected));
+  }
   try {
-    const toml::table table = toml::parse(content.str(), path);
+    const toml::table table = toml::parse(content.view(), path);
     SettingValue values = SettingValue::object();
     for (const auto& [key, node] : table) {
       values[std::string(key.str())] = from_toml(node, path, key.str(), tables);

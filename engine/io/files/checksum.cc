@@ -34,8 +34,10 @@ std::uint32_t crc32_of(std::span<const std::uint8_t> bytes) {
 }
 
 std::optional<FileContent> file_content(const std::filesystem::path& file) {
-  const FileDescriptor input(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!input.valid()) {
+  // A pipe would wait for a writer, and a device may have no end.
+  const FileDescriptor input(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  struct stat status {};
+  if (!input.valid() || ::fstat(input.get(), &status) != 0 || !S_ISREG(status.st_mode)) {
     return std::nullopt;
   }
   (void)::posix_fadvise(input.get(), 0, 0, POSIX_FADV_SEQUENTIAL);

@@ -19,7 +19,7 @@ struct FileContent {
   friend bool operator==(const FileContent&, const FileContent&) = default;
 };
 
-/// Reads the whole file, in parts. Empty if that fails.
+/// Reads the whole file, in parts. Empty if that fails, or it is no regular file.
 std::optional<FileContent> file_content(const std::filesystem::path& file);
 
 /// Appends to `object`, a JSON object as text, the checksum of everything before it: "crc32":

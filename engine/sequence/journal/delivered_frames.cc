@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/io/files/checksum.h"
 #include "engine/sequence/journal/journal_content.h"
 
 namespace vantage {
@@ -56,8 +57,13 @@ DeliveredFrames::DeliveredFrames(const SequenceLayout& layout) {
       joined_ = std::move(join);
     }
   }
-  std::erase_if(journal.segments,
-                [&](const SegmentRecord& segment) { return !are_there(segment.files); });
+  // Joining gives their packets a new checksum, so what changed must not get that far.
+  std::erase_if(journal.segments, [&](const SegmentRecord& segment) {
+    return !are_there(segment.files) ||
+           !std::ranges::all_of(segment.files, [&](const FileRecord& file) {
+             return file_content(layout.folder() / file.name) == file.content;
+           });
+  });
   segments_ = outermost(journal.segments);
   for (auto& [frame, record] : journal.frames) {
     if (!are_there(record.files)) {

@@ -13,9 +13,9 @@ namespace vantage {
 /// Frames that are finished according to the journal and whose files exist.
 class DeliveredFrames {
  public:
-  /// Reads the journal of the layout's folder and checks every file that it lists. Frames whose
-  /// files are missing or of another size, or that are in no video segment if there are videos, do
-  /// not count, except for files_of().
+  /// Reads the journal of the layout's folder and checks every file that it lists. Segments whose
+  /// bytes have changed do not count, nor do frames whose files are missing or of another size, or
+  /// that are in no video segment if there are videos, except for files_of().
   explicit DeliveredFrames(const SequenceLayout& layout);
 
   /// Delivered and not skipped.

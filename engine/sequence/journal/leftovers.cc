@@ -1,11 +1,15 @@
 #include "engine/sequence/journal/leftovers.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <filesystem>
 #include <string>
 #include <system_error>
 
+#include "engine/error.h"
 #include "engine/io/files/temporary_name.h"
+#include "engine/sequence/journal/run_journal.h"
 
 namespace vantage {
 namespace {
@@ -29,6 +33,22 @@ void remove_leftovers(const SequenceLayout& layout, FrameRange frames) {
   }
   for (const char* name : {"run.json", kShotsFile}) {
     remove_temporary_files_of(layout.journal_folder() / name);
+  }
+}
+
+void require_no_foreign_files(const SequenceLayout& layout) {
+  for (const OutputStream& stream : layout.streams()) {
+    const std::filesystem::path place =
+        stream.as_video ? layout.video(stream) : layout.folder() / stream.name;
+    std::error_code ignored;
+    // In this order: another part of the same run may have begun.
+    if (std::filesystem::exists(place, ignored) && !std::filesystem::is_empty(place, ignored) &&
+        RunJournal::parts(layout.journal_folder()).empty()) {
+      throw Error(fmt::format(
+          "{} holds files that no run made, expected a folder without them; `overwrite` replaces "
+          "those of the same names",
+          place.string()));
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include "engine/io/files/checksum.h"
 #include "engine/sequence/journal/journal_content.h"
@@ -44,16 +45,23 @@ std::set<std::string> expected_files(const JournalContent& journal, const fs::pa
   return names;
 }
 
-std::string problem_of(const fs::path& path, const std::optional<FileContent>& found,
-                       const std::vector<FileContent>& recorded) {
-  std::error_code ignored;
-  if (!found) {
-    return fs::exists(path, ignored) ? "cannot be read" : "is missing";
+/// What is wrong with a file, or nothing. One of another size is not read: it may be huge.
+std::string problem_of(const fs::path& path, const std::vector<FileContent>& recorded) {
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    return "is missing";
   }
-  const std::uint64_t expected = recorded.back().bytes;
-  return found->bytes == expected
-             ? "is not as it was written"
-             : fmt::format("has {} bytes, expected {}", found->bytes, expected);
+  const std::uintmax_t bytes = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
+  if (std::ranges::find(recorded, bytes, &FileContent::bytes) == recorded.end()) {
+    return fs::is_regular_file(path, error)
+               ? fmt::format("has {} bytes, expected {}", bytes, recorded.back().bytes)
+               : "is not a regular file";
+  }
+  const std::optional<FileContent> found = file_content(path);
+  if (!found) {
+    return "cannot be read";
+  }
+  return std::ranges::find(recorded, *found) != recorded.end() ? "" : "is not as it was written";
 }
 
 }  // namespace
@@ -71,13 +79,13 @@ RunVerification verify_run(const SequenceLayout& layout,
       break;
     }
     const fs::path path = layout.folder() / name;
-    const std::optional<FileContent> found = file_content(path);
     const std::vector<FileContent>& recorded = journal.contents.at(name);
-    if (!found || std::ranges::find(recorded, *found) == recorded.end()) {
-      result.damaged.push_back({name, problem_of(path, found, recorded)});
+    std::string problem = problem_of(path, recorded);
+    result.bytes += problem.empty() ? recorded.back().bytes : 0;
+    if (!problem.empty()) {
+      result.damaged.push_back({name, std::move(problem)});
     }
     ++result.files;
-    result.bytes += found ? found->bytes : 0;
     on_progress(result.files, static_cast<int>(names.size()));
   }
   return result;
