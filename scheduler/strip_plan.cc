@@ -22,6 +22,8 @@ constexpr int kMaxStages = 64;
 
 int divide_up(int total, int part) { return (total + part - 1) / part; }
 
+double cells(Extent extent) { return static_cast<double>(extent.columns) * extent.rows; }
+
 /// Plans a chain in passes, with what is the same for every way to cut it.
 class ChainPlanner {
  public:
@@ -121,6 +123,7 @@ class ChainPlanner {
       const Extent extent = chain_[at(end - 1)]->extent();
       plan.passes.push_back(plan_pass(first, end, steps == 1 ? extent.rows : step_rows));
       PassPlan& pass = plan.passes.back();
+      pass.expected_time *= cells(extent) / cells(chain_.back()->extent());
       if (i > 0) {
         pass.lag_rows = plan.passes[i - 1].lag_rows + reach(first, end).below;
         PassPlan& before = plan.passes[i - 1];

@@ -38,7 +38,8 @@ struct PassPlan {
   int source_rows = 0;  ///< see PassStages
   std::size_t scratch_bytes = 0;  ///< maximum of one task: rings and states
   double work_ratio = 1;          ///< cells computed ÷ cells delivered, halo columns and rows in
-  double expected_time = 0;  ///< in units of one stage over the image, in level 2 on all threads
+  /// In units of one stage over the chain's last image, in level 2 on all threads.
+  double expected_time = 0;
 };
 
 /// If whole images of state between passes exceed the memory limit, the image is processed in

@@ -363,6 +363,17 @@ TEST(StripPlan, StoringStatesCostsTime) {
   EXPECT_GT(total_expected_time(cut), expected_time(cut) + 2);
 }
 
+TEST(StripPlan, PassesOfLargerImagesTakeTheirCellsTime) {
+  const Geometry large({1000, 800}, 0, 256);
+  const Geometry small({500, 400}, 0, 256);
+  const std::vector<const RowStage*> chain = {&large, &small};
+  PlanRequest request;
+  request.threads = 1;
+  request.pass_ends = std::vector<int>{1};
+  const std::vector<PassPlan> passes = plan_chain(chain, Machine{}, request).passes;
+  EXPECT_NEAR(passes.at(0).expected_time / passes.at(1).expected_time, 4, 0.2);
+}
+
 TEST(StripPlan, ShortPassesRunVeryLongChainsToo) {
   for (const Extent extent : {Extent{1, 1}, Extent{20, 15}, Extent{200, 100}}) {
     const GeometryChain chain = iterations(extent, 1000, 64);
