@@ -44,14 +44,14 @@ struct TripleFit {
 ///
 /// Both images are warped to the view: along scanlines if it is on the baseline with the images'
 /// orientation (RowPairWarper), else in one pass through all homographies (SurfaceWarper). Their
-/// colours are regressed on each other over rows of the whole view (3.9–3.11), combined (3.12–3.14), and
-/// the holes filled along its scanlines. Images show the same surface if their disparities, or off
-/// the baseline their nearness (NewView), agree within the gradient limit. Views that reduce the
-/// images are made of several samples per pixel (view_sampling.h). At a camera's position, XS = 0
-/// or 1, the view shows that camera's own photograph wherever its map is known, transformed by the
-/// homography alone; with γ = α, the default, unaltered. A row without pixels from either image
-/// copies the nearest row that has some, unless holes are left black (all channels 0). An alpha
-/// channel is warped and blended like a colour, but not regressed.
+/// colours are regressed on each other over rows of the whole view (3.9–3.11), combined
+/// (3.12–3.14), and the holes filled along its scanlines. Images show the same surface if their
+/// disparities, or off the baseline their nearness (NewView), agree within the gradient limit.
+/// Views that reduce the images are made of several samples per pixel (view_sampling.h). At a
+/// camera's position, XS = 0 or 1, the view shows that camera's own photograph wherever its map is
+/// known, transformed by the homography alone; with γ = α, the default, unaltered. A row without
+/// pixels from either image copies the nearest row that has some, unless holes are left black (all
+/// channels 0). An alpha channel is warped and blended like a colour, but not regressed.
 ///
 /// Thread rule: synthesize() may be called concurrently for different results. Results are
 /// identical for any ExecutionOptions and on any instruction set.

@@ -20,8 +20,7 @@ struct ForwardWarpRow {
 /// column.
 ///
 /// The result equals a z-buffer on d over all samples, without comparisons. floor(½ − s·d) is the
-/// same number for equal d and monotone in d, in floating point too; it is computed in float, like
-/// the disparities. So two pixels can meet on one
+/// same number for equal d and monotone in d, in floating point too. So two pixels can meet on one
 /// position only if the later one has the strictly larger d: there are no ties. An interpolated
 /// sample lies exactly at its position, between two pixels that do not land there. So a pixel that
 /// meets it is more than one column away, which rounding (half a column) cannot outweigh; two

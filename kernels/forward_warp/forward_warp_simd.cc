@@ -13,6 +13,8 @@ namespace vantage::kernels::HWY_NAMESPACE {
 // cache by then, since vectors that other vectors have just been stored across wait for it.
 constexpr int kBlock = 256;
 constexpr int kWord = 64;
+// Farther than any row width, and safe to convert and to add to a column.
+constexpr double kFarColumns = 1 << 29;
 
 // Neighbouring columns plus one on each side: the end columns of the adjacent blocks.
 struct Block {
@@ -27,29 +29,30 @@ using Columns = hn::CappedTag<float, 16>;
 using Targets = hn::RebindToSigned<Columns>;
 constexpr int kLanes = static_cast<int>(hn::MaxLanes(Columns()));
 
-// floor(x − s·d + ½) for the columns of a block. Reads and writes whole vectors.
+// floor(x − s·d + ½) for the columns of a block, in double as in every other way to a place.
+// Reads and writes whole vectors.
 HWY_INLINE void find_targets(const ForwardWarpRow& row, const float* HWY_RESTRICT disparity_px,
                              Block& block) {
-  const Columns d;
-  const Targets di;
-  const auto largest = hn::Set(d, std::numeric_limits<float>::max());
-  const auto unknown = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
-  const auto offset = hn::Set(d, static_cast<float>(row.camera_offset));
-  const auto lane = hn::Iota(di, 0);
-  for (int i = 0; i < block.count; i += kLanes) {
-    const auto read = hn::LoadU(d, disparity_px + i);
+  const hn::CappedTag<double, 8> d64;
+  const hn::Rebind<float, decltype(d64)> d32;
+  const hn::Rebind<std::int32_t, decltype(d64)> di32;
+  const auto largest = hn::Set(d32, std::numeric_limits<float>::max());
+  const auto unknown = hn::Set(d32, std::numeric_limits<float>::quiet_NaN());
+  const auto offset = hn::Set(d64, row.camera_offset);
+  const auto far = hn::Set(d64, kFarColumns);
+  const auto before = hn::Set(di32, -1);
+  const auto after = hn::Set(di32, row.width);
+  const auto lane = hn::Iota(di32, 0);
+  for (int i = 0; i < block.count; i += static_cast<int>(hn::MaxLanes(d64))) {
+    const auto read = hn::LoadU(d32, disparity_px + i);
     const auto known = hn::Le(hn::Abs(read), largest);
-    const auto shift =
-        hn::Floor(hn::Sub(hn::Set(d, 0.5F), hn::Mul(offset, hn::IfThenElseZero(known, read))));
-    const int x = block.begin + i;
-    // Limited to the columns before and after the view, which floats hold exactly.
-    const auto column = hn::ConvertTo(d, lane);
-    const auto before = hn::Sub(hn::Set(d, static_cast<float>(-1 - x)), column);
-    const auto after = hn::Sub(hn::Set(d, static_cast<float>(row.width - x)), column);
-    const auto target = hn::Add(hn::ConvertTo(di, hn::Min(hn::Max(shift, before), after)),
-                                hn::Add(lane, hn::Set(di, x)));
-    hn::StoreU(hn::IfThenElse(known, read, unknown), d, block.disparity_px + 1 + i);
-    hn::StoreU(hn::IfThenElse(hn::RebindMask(di, known), target, hn::Set(di, -1)), di,
+    const auto exact = hn::Mul(offset, hn::PromoteTo(d64, hn::IfThenElseZero(known, read)));
+    const auto floored = hn::Floor(hn::Sub(hn::Set(d64, 0.5), exact));
+    const auto shift = hn::DemoteTo(di32, hn::Min(hn::Max(floored, hn::Neg(far)), far));
+    const auto column = hn::Add(lane, hn::Set(di32, block.begin + i));
+    const auto target = hn::Min(hn::Max(hn::Add(column, shift), before), after);
+    hn::StoreU(hn::IfThenElse(known, read, unknown), d32, block.disparity_px + 1 + i);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(di32, known), target, before), di32,
                block.target + 1 + i);
   }
 }

@@ -156,8 +156,12 @@ TEST(SurfaceWarper, OnTheBaselineItEqualsTheScanlineWarp) {
     const auto& image = std::get<Image<std::uint8_t>>(view.image.pixels);
     const auto& scanlines = std::get<Image<std::uint8_t>>(expected.image.pixels);
     ASSERT_EQ(image.height(), 38);
-    EXPECT_EQ(std::memcmp(view.intensity.data(), expected.intensity.data(), sizeof(view.intensity)),
-              0);
+    // Sums over the rows of another height are added in another order.
+    for (int c = 0; c < channels; ++c) {
+      const auto index = static_cast<std::size_t>(c);
+      EXPECT_NEAR(view.intensity[index].gain, expected.intensity[index].gain, 1e-9);
+      EXPECT_NEAR(view.intensity[index].offset, expected.intensity[index].offset, 1e-6);
+    }
     for (int y = 0; y < 37; ++y) {
       ASSERT_EQ(std::vector<int>(image.row(y), image.row(y) + 131 * channels),
                 std::vector<int>(scanlines.row(y), scanlines.row(y) + 131 * channels))

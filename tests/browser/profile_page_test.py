@@ -39,7 +39,8 @@ def sample(median, least=None, most=None):
 def made_up_count(threads, wall_s):
     """On one number of threads: two stages, of which one does not count its work."""
     return {
-        "threads": threads, "runs": 5, "wall_s": sample(wall_s, wall_s - 0.01, wall_s + 0.01),
+        "threads": threads, "runs": 5, "frames": 20,
+        "wall_s": sample(wall_s, wall_s - 0.01, wall_s + 0.01),
         "compute_s": sample(0.25), "cells_per_s": sample(54.9e6), "frames_per_s": sample(0.0),
         "work_share": sample(0.88), "peak_memory_bytes": sample(80e6),
         "imbalance": sample(1.04, 1.03, 1.05),
@@ -54,10 +55,14 @@ def made_up_count(threads, wall_s):
              "cells": 0.0, "operations": 0.0, "bytes": 0.0, "work_share": 0.127,
              "ns_per_cell": 0.0, "cells_per_s": 0.0, "halo_share": 0.0, "gb_per_s": 0.0,
              "gflops": 0.0, "roofline": None}],
-        "parts": [{"name": "match left", "seconds": sample(0.5, 0.48, 0.51), "count": 24.0},
-                  {"name": "fill", "seconds": sample(0.0002), "count": 39.0},
-                  {"name": "<b>", "seconds": sample(0.0001), "count": 1.0}],
-        "waits": [{"name": "idle", "seconds": sample(0.064), "count": 1.28e6}],
+        "parts": [{"name": "match left", "seconds": sample(0.5, 0.48, 0.51),
+                   "processor_s": sample(0.49), "count": 24.0},
+                  {"name": "fill", "seconds": sample(0.0002), "processor_s": sample(0.0002),
+                   "count": 39.0},
+                  {"name": "<b>", "seconds": sample(0.0001), "processor_s": sample(0.0001),
+                   "count": 1.0}],
+        "waits": [{"name": "idle", "seconds": sample(0.064), "processor_s": sample(0.0),
+                   "count": 1.28e6}],
         "waiting_for": {"reading_s": sample(0.0), "computing_s": sample(0.016),
                         "writing_s": sample(0.032), "nothing_s": sample(0.016)},
         "workers": [{"name": "main", "is_in_pool": True, "work_s": 0.3, "wait_s": 0.02},
@@ -80,6 +85,8 @@ MADE_UP = {
                   {"threads": 2, "ratio": sample(1.81, 1.78, 1.84), "efficiency": 0.906,
                    "serial_fraction": 0.103}],
     "serial_fraction": 0.0901,
+    "processor_growth": [{"name": "match left", "kind": "part", "ms": [25.0, 26.0],
+                          "growth": [0.0, 0.04]}],
     "memory": [{"name": "rings", "bytes": 21_200_000}, {"name": "maps", "bytes": 12_900_000}],
     "timeline_s": 0.32,
     "timeline": [

@@ -58,15 +58,11 @@ class ZBuffer {
   std::vector<double> column_;
 };
 
-long target_of(const std::vector<float>& d, double s, std::size_t x) {
-  return static_cast<long>(x) + std::lround(std::floor(0.5F - static_cast<float>(s) * d[x]));
-}
-
 void add_pixels(const std::vector<float>& d, double s, ZBuffer& buffer) {
   for (std::size_t x = 0; x < d.size(); ++x) {
     if (std::isfinite(d[x])) {
       const double column = static_cast<double>(x);
-      buffer.add(target_of(d, s, x), d[x], column);
+      buffer.add(std::lround(std::floor(column - s * d[x] + 0.5)), d[x], column);
     }
   }
 }
@@ -80,9 +76,9 @@ void add_sampling_gaps(const std::vector<float>& d, double s, float limit, ZBuff
     }
     const double from = static_cast<double>(x) - s * d[x];
     const double to = static_cast<double>(x) + 1 - s * d[x + 1];
-    for (long n = target_of(d, s, x) + 1; n < target_of(d, s, x + 1); ++n) {
-      const double f = (static_cast<double>(n) - from) / (to - from);
-      buffer.add(n, (1 - f) * d[x] + f * d[x + 1], static_cast<double>(x) + f);
+    for (double n = std::floor(from + 0.5) + 1; n < std::floor(to + 0.5); ++n) {
+      const double f = (n - from) / (to - from);
+      buffer.add(std::lround(n), (1 - f) * d[x] + f * d[x + 1], static_cast<double>(x) + f);
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <system_error>
 
@@ -13,6 +14,8 @@
 
 namespace vantage {
 namespace {
+
+constexpr FrameRange kAll{0, std::numeric_limits<int>::max()};
 
 /// Files of frames are named "000012.pfm", segments "000000-000049.mp4".
 bool is_of_frames(const std::string& name, FrameRange frames) {
@@ -37,17 +40,27 @@ void remove_leftovers(const SequenceLayout& layout, FrameRange frames) {
 }
 
 void require_no_foreign_files(const SequenceLayout& layout) {
+  std::error_code ignored;
   for (const OutputStream& stream : layout.streams()) {
-    const std::filesystem::path place =
-        stream.as_video ? layout.video(stream) : layout.folder() / stream.name;
-    std::error_code ignored;
+    std::filesystem::path found;
+    if (stream.as_video && std::filesystem::exists(layout.video(stream), ignored)) {
+      found = layout.video(stream);
+    } else if (!stream.as_video) {
+      for (const auto& entry :
+           std::filesystem::directory_iterator(layout.folder() / stream.name, ignored)) {
+        if (entry.is_regular_file(ignored) &&
+            is_of_frames(entry.path().filename().string(), kAll)) {
+          found = entry.path();
+          break;
+        }
+      }
+    }
     // In this order: another part of the same run may have begun.
-    if (std::filesystem::exists(place, ignored) && !std::filesystem::is_empty(place, ignored) &&
-        RunJournal::parts(layout.journal_folder()).empty()) {
+    if (!found.empty() && RunJournal::parts(layout.journal_folder()).empty()) {
       throw Error(fmt::format(
-          "{} holds files that no run made, expected a folder without them; `overwrite` replaces "
-          "those of the same names",
-          place.string()));
+          "{} is there, and no run made it; expected a folder without such files, `overwrite` "
+          "replaces them",
+          found.string()));
     }
   }
 }
