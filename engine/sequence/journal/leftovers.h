@@ -9,8 +9,8 @@ namespace vantage {
 /// that cannot be removed stay.
 void remove_leftovers(const SequenceLayout& layout, FrameRange frames);
 
-/// Throws Error if files named like results of a run are where one would write them, and there is no
-/// journal of a run that made them.
+/// Throws Error if files named like results of a run are where one would write them, and there is
+/// no journal of a run that made them.
 void require_no_foreign_files(const SequenceLayout& layout);
 
 }  // namespace vantage

@@ -134,7 +134,7 @@ struct SequenceOptions {
   /// Each shot is searched in the range that is found in some of its pairs, match.disparities where
   /// none is found; not with TemporalOptions::uses_past().
   bool search_range_per_shot = false;
-  DepthVideoScale depth_scale;                       ///< of kDepthVideo
+  DepthVideoScale depth_scale;                          ///< of kDepthVideo
   VideoCoding depth_coding = VideoCoding::kHuffYuv_16;  ///< of kDepthVideo, a grey one
   TemporalOptions temporal;
   /// Extension of the disparity, confidence and depth resolution files without the dot, one of

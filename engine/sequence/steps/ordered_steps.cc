@@ -20,10 +20,8 @@ StepEntry read_step() {
 }
 
 StepEntry write_step() {
-  return {.name = "write",
-          .account = "write",
-          .kind = WorkKind::kWriting,
-          .phase = StepPhase::kWrite};
+  return {
+      .name = "write", .account = "write", .kind = WorkKind::kWriting, .phase = StepPhase::kWrite};
 }
 
 StepEntry deliver_step() {
