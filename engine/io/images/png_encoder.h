@@ -23,7 +23,8 @@ void encode_png(const Image<std::uint16_t>& image, std::vector<std::uint8_t>& by
 /// The values of row y, which may be made in `memory`, of a row's size. Thread rule: concurrently.
 using PngRowSource = std::function<const std::uint16_t*(int y, std::uint16_t* memory)>;
 
-/// The same of a grey image whose rows are made when they are encoded.
+/// Encodes a 16-bit grey image row by row: `row` makes each row just before it is encoded, so that
+/// the image need not be stored.
 void encode_png(int width, int height, const PngRowSource& row, std::vector<std::uint8_t>& bytes,
                 Execution* execution = nullptr);
 

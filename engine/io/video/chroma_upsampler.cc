@@ -14,8 +14,9 @@ extern "C" {
 namespace vantage {
 namespace {
 
-/// Of the four rows of samples around row y of pixels. libswscale leaves the outermost of them out
-/// where it is above the picture, and enlarges the others; elsewhere the border row stands for it.
+/// Weights of the four chroma rows around row y of the picture. Where the outermost chroma row
+/// would lie above the picture, libswscale drops it and scales up the weights of the others. At all
+/// other borders it repeats the border row.
 kernels::ChromaWeights weights_of(int y) {
   const auto [far, near, nearest, next] = kernels::kChromaWeights;
   return y == 0       ? kernels::ChromaWeights{0, 0, 4432, -336}

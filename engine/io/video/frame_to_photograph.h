@@ -25,8 +25,8 @@ class FrameToPhotograph {
   /// converted.
   void convert(const AVFrame& frame, Photograph& photograph);
 
-  /// The same pixels, half of the columns to either photograph. False, and nothing is done, where
-  /// that does not come by itself: for grey and RGB formats and odd widths.
+  /// Converts the left and the right half of the frame into one photograph each. Returns false, and
+  /// changes nothing, for grey and RGB formats and for odd widths.
   bool convert_halves(const AVFrame& frame, const PictureHalves& halves);
 
  private:
@@ -36,7 +36,7 @@ class FrameToPhotograph {
   void fill(const AVFrame& frame, Image<T>& image);
   /// By the scaler.
   void scale(const AVFrame& frame, std::uint8_t* const* planes, const int* pitches);
-  /// Of luma and chroma; each part gets as many columns.
+  /// Converts luma and chroma. The columns of the frame are divided equally among `parts`.
   template <typename T>
   void fill_colours(const AVFrame& frame, std::span<Photograph* const> parts);
   /// The next row, from above, of luma and chroma of every pixel.
