@@ -123,7 +123,7 @@ class ChainPlanner {
       const Extent extent = chain_[at(end - 1)]->extent();
       plan.passes.push_back(plan_pass(first, end, steps == 1 ? extent.rows : step_rows));
       PassPlan& pass = plan.passes.back();
-      pass.expected_time *= cells(extent) / cells(chain_.back()->extent());
+      pass.expected_time *= cells(extent) / std::max(1.0, cells(chain_.back()->extent()));
       if (i > 0) {
         pass.lag_rows = plan.passes[i - 1].lag_rows + reach(first, end).below;
         PassPlan& before = plan.passes[i - 1];
@@ -246,12 +246,16 @@ ChainPlan plan_chain(Chain chain, const Machine& machine, const PlanRequest& req
     return planner.plan(ends);
   };
   const int min = divide_up(stages, kMaxStages);
+  double least = 0;  // what the stages take in any cut: each makes its cells at least once
+  for (const RowStage* stage : chain) {
+    least += std::min(1.0, cells(stage->extent()) / std::max(1.0, cells(chain.back()->extent())));
+  }
   const auto next = [](int passes) {
     return passes < kFewPasses ? passes + 1 : static_cast<int>(passes * kPassesStep);
   };
   ChainPlan best = equal_passes(min);
   for (int passes = next(min); passes <= stages; passes = next(passes)) {
-    if (planner.fits(best) && kPassCost * (passes - 1) > total_expected_time(best)) {
+    if (planner.fits(best) && kPassCost * (passes - 1) + least > total_expected_time(best)) {
       break;
     }
     ChainPlan candidate = equal_passes(passes);

@@ -172,7 +172,7 @@ TEST_F(SlowRunMemory, HasOwners) {
 
 /// Messages, names, tasks, file formats: what a frame allocates is small and does not grow.
 TEST_F(SlowRunMemory, FramesAllocateLittle) {
-  EXPECT_LT(allocations_per_frame(arguments(out_, {}), 1), 500);
+  EXPECT_LT(allocations_per_frame(arguments(out_, {}), 1), 450);
   EXPECT_LT(allocations_per_frame(arguments(out_, kImageOutputs), 1), 800);
   // In which every fiftieth frame begins videos anew.
   EXPECT_LT(allocations_per_frame(
