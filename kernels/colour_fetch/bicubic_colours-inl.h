@@ -30,19 +30,34 @@ struct Places {
   Vec fraction;
 };
 
-// `disparity_px`: 0 at holes. The column is limited by its distance from the position, which floats
-// hold exactly in rows of less than 2²³ pixels, and so are its parts.
+// The places of half of the positions, computed in double as in every other way to a place.
+using HalfValues = hn::Half<Values>;
+struct HalfPlaces {
+  hn::VFromD<hn::RebindToSigned<HalfValues>> whole;
+  hn::VFromD<HalfValues> fraction;
+};
+HWY_INLINE HalfPlaces find_half_places(const BicubicFetchRow& row, int n,
+                                       hn::VFromD<HalfValues> disparity_px) {
+  const HalfValues d;
+  const hn::RebindToSigned<HalfValues> di;
+  const hn::Rebind<double, HalfValues> d64;
+  // Not Iota(d64, n): only a constant start avoids a detour through memory.
+  const auto position = hn::Add(hn::Iota(d64, 0), hn::Set(d64, n));
+  const auto exact =
+      hn::Add(position, hn::Mul(hn::Set(d64, row.camera_offset), hn::PromoteTo(d64, disparity_px)));
+  const auto column = hn::Min(hn::Max(exact, hn::Set(d64, -1.0)), hn::Set(d64, row.width - 0.5));
+  const auto whole = hn::Floor(column);
+  return {hn::DemoteTo(di, whole), hn::DemoteTo(d, hn::Sub(column, whole))};
+}
+
+// `disparity_px`: 0 at holes.
 HWY_INLINE Places find_places(const BicubicFetchRow& row, int n, Vec disparity_px) {
   const Values d;
   const Columns di;
-  const auto lane = hn::ConvertTo(d, hn::Iota(di, 0));
-  const auto least = hn::Sub(hn::Set(d, static_cast<float>(-1 - n)), lane);
-  const auto most = hn::Sub(hn::Set(d, static_cast<float>(row.width - n) - 0.5F), lane);
-  const auto offset = hn::Set(d, static_cast<float>(row.camera_offset));
-  const auto distance = hn::Min(hn::Max(hn::Mul(offset, disparity_px), least), most);
-  const auto floored = hn::Floor(distance);
-  const auto position = hn::Add(hn::Iota(di, 0), hn::Set(di, n));
-  return {hn::Add(position, hn::ConvertTo(di, floored)), hn::Sub(distance, floored)};
+  const HalfValues half;
+  const HalfPlaces low = find_half_places(row, n, hn::LowerHalf(half, disparity_px));
+  const HalfPlaces high = find_half_places(row, n + kAtOnce / 2, hn::UpperHalf(half, disparity_px));
+  return {hn::Combine(di, high.whole, low.whole), hn::Combine(d, high.fraction, low.fraction)};
 }
 
 // Weighted taps, clamped to the range of values. kInRange: all taps lie within the pixel type's

@@ -5,7 +5,7 @@
 namespace vantage::kernels {
 
 /// Colours of one warped scanline, fetched backward from the source (3.2.7): position n of the new
-/// view shows source column n + s·d, its floor and fraction those of the float product.
+/// view shows source column n + s·d.
 ///
 /// `pixels` and `source_disparity_px` are rows with margins (pixel_row.h); `warped_disparity_px`
 /// and the result rows have none.

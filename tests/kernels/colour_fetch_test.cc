@@ -50,14 +50,13 @@ struct Scanline {
   }
 };
 
-/// The contract in double; the place in float.
+/// The contract in double.
 double plain_colour(const BicubicFetchRow& row, int n, int c) {
   const float d = row.warped_disparity_px[n];
   if (std::isnan(d)) {
     return 0;
   }
-  const double column =
-      std::clamp(n + double{static_cast<float>(row.camera_offset) * d}, -1.0, row.width - 0.5);
+  const double column = std::clamp(n + row.camera_offset * d, -1.0, row.width - 0.5);
   const int first = static_cast<int>(std::floor(column)) - 1;
   const auto fraction = static_cast<float>(column - std::floor(column));
   bool on_surface[4];
