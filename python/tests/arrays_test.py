@@ -125,6 +125,15 @@ def test_bad_arrays(pair, change, error, message):
     assert "\n" not in str(problem.value)
 
 
+def test_arrays_that_raise_say_what_they_say(pair):
+    class Tensor:
+        def __array__(self, *_, **__):
+            raise TypeError("can't convert a tensor of a GPU")
+
+    with pytest.raises(TypeError, match="tensor of a GPU"):
+        MATCHER.compute(Tensor(), pair[1])
+
+
 @pytest.mark.parametrize("value", [-np.inf, np.inf])
 def test_floats_that_are_not_finite(pair, value):
     left = pair[0].astype(np.float32) / 255

@@ -8,6 +8,15 @@
 
 namespace vantage::config_test {
 
+/// "a.a.a": a key of so many parts.
+std::string deep_key(int parts) {
+  std::string key = "a";
+  for (int part = 1; part < parts; ++part) {
+    key += ".a";
+  }
+  return key;
+}
+
 using Config = PairTest;
 
 TEST_F(Config, PrintedSettingsFedBackAreTheSame) {
@@ -216,6 +225,9 @@ TEST_F(InputConfig, BadFilesAreOneLine) {
       {"window = 99999999999\n", "expected a whole number"},
       {"[match]\nwindow = 5\n", "'match' is a table"},
       {"window = = 5\n", ":1: not TOML"},
+      {deep_key(40'000) + " = 5\n", "a key has more than 64 parts"},
+      {"[" + deep_key(65) + "]\n", "a key has more than 64 parts"},
+      {"# " + deep_key(99) + "\nleft = '" + deep_key(99) + "'\nwindoe = 1\n", "'windoe'"},
       {std::string("\0\xff\xfe", 3), "not TOML"}};
   for (const Case& bad : cases) {
     write_file(folder_ / "bad.toml", bad.content);

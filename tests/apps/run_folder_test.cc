@@ -289,6 +289,18 @@ TEST_F(RunFolder, WhereThereIsNoRun) {
   succeeds(run(out_, {"--overwrite"}));
 }
 
+TEST_F(RunFolder, FilesThatNoRunMadeAreNotReplacedUnasked) {
+  fs::create_directories(out_ + "/disparity");
+  write_file(out_ + "/disparity/000003.pfm", "mine");
+  for (const std::string& opening : {"", "--resume", "--force"}) {
+    expect_one_line(run(out_, opening.empty() ? Words{"--quiet"} : Words{"--quiet", opening}), 1,
+                    "run", "disparity/000003.pfm is there, and no run made it");
+    EXPECT_EQ(read_file(out_ + "/disparity/000003.pfm"), "mine");
+  }
+  succeeds(run(out_, {"--overwrite"}));
+  EXPECT_NE(read_file(out_ + "/disparity/000003.pfm"), "mine");
+}
+
 TEST_F(RunFolder, FilesOfOthersStay) {
   fs::create_directories(out_ + "/disparity");
   write_file(out_ + "/disparity/notes.txt", "mine");

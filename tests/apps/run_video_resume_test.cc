@@ -1,6 +1,8 @@
 // Runs with videos that go on where they stopped, runs that are resumed by their folder alone, and
 // results that are verified.
 
+#include <sys/stat.h>
+
 #include "tests/apps/sampling.h"
 
 namespace vantage::run_video_resume_test {
@@ -159,6 +161,34 @@ TEST_F(ResumedByFolder, VerificationFindsDamageAndResumingRepairsIt) {
   EXPECT_TRUE(same_files(results_in(out_), expected));
   succeeds(verify());
   succeeds(run_vantage({"merge", out_, "--verify"}));
+}
+
+TEST_F(ResumedByFolder, DamagedSegmentsAreMadeAgainInsteadOfJoined) {
+  const Words outputs = words("--save preview --video preview --chunk-frames 8");
+  const FolderContent expected = undisturbed(outputs);
+  for (const std::string shard : {"1/2", "2/2"}) {
+    succeeds(run(out_, joined(outputs, {"--shard", shard})));
+  }
+  damage(".vantage/segments/preview/000000-000007.mp4");
+  expect_failure(run_vantage({"merge", out_}), 1, "8 of 20 frames are missing (0-7)");
+  EXPECT_FALSE(fs::exists(out_ + "/preview.mp4"));
+  succeeds(run_vantage({"run", "-o", out_, "--resume", "--frames", "all"}));
+  succeeds(run_vantage({"merge", out_}));
+  EXPECT_TRUE(same_files(results_in(out_), expected));
+}
+
+TEST_F(ResumedByFolder, VerificationReadsNeitherPipesNorDevices) {
+  succeeds(run(out_));
+  for (const std::string name : {"disparity/000002.pfm", "disparity/000017.pfm"}) {
+    fs::remove(out_ + "/" + name);
+  }
+  ASSERT_EQ(::mkfifo((out_ + "/disparity/000002.pfm").c_str(), 0600), 0);
+  fs::create_symlink("/dev/zero", out_ + "/disparity/000017.pfm");
+  const ProcessResult damaged = verify({"--quiet"});
+  EXPECT_EQ(damaged.exit_code, 1);
+  EXPECT_EQ(damaged.out,
+            "disparity/000002.pfm is not a regular file\n"
+            "disparity/000017.pfm is not a regular file\n");
 }
 
 TEST_F(ResumedByFolder, LinesOfTheJournalThatWereChangedAreNotBelieved) {
