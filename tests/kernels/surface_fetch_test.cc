@@ -197,8 +197,7 @@ TYPED_TEST(SurfaceFetch, InOneRowIsTheFetchAlongIt) {
       for (int n = 0; n < width; ++n) {
         // A disparity that one of the two pixels around the position has.
         const float d = scene.at(std::clamp(n + random_int(random, -1, 1), 0, width - 1), y);
-        // The product of floats, as of fetch_bicubic_row().
-        const double x = std::clamp(n + double{static_cast<float>(s) * d}, -1.0, width - 0.5);
+        const double x = std::clamp(n + s * d, -1.0, width - 0.5);
         const auto seen = [&](double column) {
           return column >= 0 && column < width &&
                  std::abs(scene.at(static_cast<int>(column), y) - d) <= 1;
