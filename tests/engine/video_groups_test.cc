@@ -97,6 +97,36 @@ TEST(VideoGroups, BytesDoNotDependOnWhoEncodes) {
   }
 }
 
+// The threads of a run leave when its last frame is done; who finishes the file does what is left.
+TEST(VideoGroups, FinishingGoesOnWhereOthersLeaveAGroup) {
+  const TemporaryFolder folder;
+  const FrameConversion convert = make_frame_conversion(VideoCoding::kH264, kWidth, kHeight);
+  for (int round = 0; round < 10; ++round) {
+    VideoWriter writer(folder / "left.mp4", kWidth, kHeight, {});
+    for (int i = 0; i < 20; ++i) {
+      writer.add(convert(frame_of(VideoCoding::kH264, i)));
+    }
+    std::atomic<bool> has_begun{false};
+    const std::jthread leaving([&] {
+      for (int part = 0; part < 5; ++part) {
+        writer.encode_some();
+        has_begun = true;
+      }
+    });
+    while (!has_begun) {
+      std::this_thread::yield();
+    }
+    writer.finish();
+    VideoReader reader(folder / "left.mp4");
+    Photograph frame;
+    int frames = 0;
+    while (reader.read(frame)) {
+      ++frames;
+    }
+    EXPECT_EQ(frames, 20) << "round " << round;
+  }
+}
+
 TEST(VideoGroups, EachStartsWithAKeyFrameAndTimesGoOn) {
   const TemporaryFolder folder;
   constexpr int kFrames = 123;

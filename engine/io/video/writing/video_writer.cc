@@ -125,6 +125,7 @@ struct VideoWriter::State {
     return frames_left;
   }
   void add(LibavFrame frame);
+  Group* find_work();
   void encode(Group& group, std::unique_lock<std::mutex>& lock);
   void store_coded_groups();
 };
@@ -168,6 +169,19 @@ void VideoWriter::State::add(LibavFrame frame) {
   if (group.frames() == group_frames()) {
     group.close();
   }
+}
+
+/// A group that may be encoded now; null: none.
+VideoWriter::State::Group* VideoWriter::State::find_work() {
+  if (error) {
+    return nullptr;
+  }
+  const bool may_open = frames_waiting() > std::max(2, group_frames() / 3);
+  const auto group = std::ranges::find_if(groups, [&](const Group& one) {
+    return !one.is_at_work && one.pictures.has_work() &&
+           (one.pictures.is_open() || may_open || &one == &groups.front());
+  });
+  return group != groups.end() ? &*group : nullptr;
 }
 
 /// `lock`: of the mutex, which is free while the encoder works.
@@ -247,12 +261,8 @@ void VideoWriter::add(LibavFrame frame) { state_->add(std::move(frame)); }
 
 bool VideoWriter::encode_some() {
   std::unique_lock lock(state_->mutex);
-  const bool may_open = state_->frames_waiting() > std::max(2, state_->group_frames() / 3);
-  const auto group = std::ranges::find_if(state_->groups, [&](const State::Group& one) {
-    return !one.is_at_work && one.pictures.has_work() &&
-           (one.pictures.is_open() || may_open || &one == &state_->groups.front());
-  });
-  if (state_->error || group == state_->groups.end()) {
+  State::Group* group = state_->find_work();
+  if (group == nullptr) {
     return false;
   }
   state_->encode(*group, lock);
@@ -282,10 +292,15 @@ void VideoWriter::rename(const std::filesystem::path& path) {
 
 void VideoWriter::finish() {
   end();
-  while (encode_some()) {
-  }
   std::unique_lock lock(state_->mutex);
-  state_->changed.wait(lock, [&] { return state_->groups.empty() || state_->error; });
+  while (!state_->groups.empty() && !state_->error) {
+    if (State::Group* group = state_->find_work()) {
+      state_->encode(*group, lock);
+    } else {
+      // Another thread is at work. It may leave a group when it has encoded a part of it.
+      state_->changed.wait(lock);
+    }
+  }
   state_->require_no_error();
   state_->file.finish(state_->frames);
 }
