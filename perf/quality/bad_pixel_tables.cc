@@ -31,7 +31,10 @@ const std::vector<Column>& bad_columns() {
       {"bad 2", [](const Outcome& o) { return o.bad.visible[kTwo]; }},
       {"all: bad 1", [](const Outcome& o) { return o.bad.all[kOne]; }},
       {"bad 2", [](const Outcome& o) { return o.bad.all[kTwo]; }},
-      {"near edges: bad 2", [](const Outcome& o) { return o.bad.near_discontinuity[kTwo]; }},
+      {"D1", [](const Outcome& o) { return o.bad.d1; }},
+      {"hidden: bad 1", [](const Outcome& o) { return o.bad.hidden[kOne]; }},
+      {"visible unmatched: bad 1", [](const Outcome& o) { return o.bad.visible_unmatched[kOne]; }},
+      {"near edges: bad 1", [](const Outcome& o) { return o.bad.near_discontinuity[kOne]; }},
   };
   return columns;
 }
@@ -170,6 +173,16 @@ void print_tables(const Results& results) {
   print_by_scene(results, {"Bad 2 of visible pixels", contested_columns()[1].figure}, 2);
   print_by_scene(results, {"Bad 1 of all pixels", contested_columns()[2].figure}, 2);
   print_by_scene(results, {"Bad 2 of all pixels", contested_columns()[3].figure}, 2);
+  print_by_scene(
+      results, {"Bad 1 of hidden pixels", [](const Outcome& o) { return o.bad.hidden[kOne]; }}, 2);
+  print_by_scene(results,
+                 {"Bad 1 of visible unmatched pixels",
+                  [](const Outcome& o) { return o.bad.visible_unmatched[kOne]; }},
+                 2);
+  print_by_scene(results,
+                 {"Median of estimate − truth (px), visible pixels",
+                  [](const Outcome& o) { return o.bad.median_error_px; }},
+                 3);
   if (results.outcomes.front().front().time) {
     print_by_scene(results, {"Milliseconds for both maps", wall_ms}, 1);
     print_by_scene(results, {"Milliseconds of processors for both maps", processor_ms}, 1);

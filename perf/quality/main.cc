@@ -184,10 +184,10 @@ void judge(const TrueScene& scene, const std::filesystem::path& data, GreyImages
   }
   const std::vector<std::optional<FrameTime>> times = time_in_turn(makers, rounds, timed);
   for (std::size_t i = 0; i < makers.size(); ++i) {
-    const DisparityMap& map = makers[i]->maps().left.disparity_px;
+    const MatchedMap& map = makers[i]->maps().left;
     results.outcomes[i].push_back(
         {bad_pixels(map, loaded), times[i],
-         scene.is_fractional ? sub_pixel_figures(map, loaded) : SubPixelFigures()});
+         scene.is_fractional ? sub_pixel_figures(map.disparity_px, loaded) : SubPixelFigures()});
   }
   results.truth_sub_pixel.push_back(scene.is_fractional ? sub_pixel_figures(loaded.truth, loaded)
                                                         : SubPixelFigures());

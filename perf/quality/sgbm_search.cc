@@ -61,7 +61,7 @@ void try_uniqueness(SgbmSetting setting, const LoadedScene& scene, Execution& ex
     filter_opencv_speckles(one.post_processing, scene.pair.range, filtered.left);
     filter_opencv_speckles(one.post_processing, scene.pair.range, filtered.right);
     refine_peer_maps(one.post_processing, scene.pair, filtered, execution, maps);
-    one.of_scenes.push_back(bad_pixels(maps.left.disparity_px, scene));
+    one.of_scenes.push_back(bad_pixels(maps.left, scene));
   }
 }
 
