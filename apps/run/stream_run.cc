@@ -1,8 +1,7 @@
 #include "apps/run/stream_run.h"
 
 #include <fmt/format.h>
-
-#include <cstdio>
+#include <unistd.h>
 
 #include "apps/commands/commands.h"
 #include "apps/process/interrupt.h"
@@ -54,7 +53,8 @@ int run_to_stream(const RunJob& job, const RunSession& session, Execution& execu
         to_string(job.sequence.frame_rate));
   }
   const SequenceLayout layout(job.output, job.sequence);
-  StreamedVideoWriter writer(stdout, job.stream_format, job.sequence.frame_rate,
+  StreamedVideoWriter writer(StreamOutput(STDOUT_FILENO, &interrupt_flag()), job.stream_format,
+                             job.sequence.frame_rate,
                              film_format_of(layout.streams().front().output, job.sequence.film));
   SequenceReport sequence;
   {

@@ -9,6 +9,7 @@
 #include "engine/sequence/journal/commit_queue.h"
 #include "engine/sequence/run_totals.h"
 #include "engine/sequence/steps/frame_pictures.h"
+#include "scheduler/interruption.h"
 
 namespace vantage {
 namespace {
@@ -24,10 +25,14 @@ class StreamRun final : private FrameFlow {
         writer_(writer) {}
 
   SequenceReport work() {
-    const scheduler::FrameOutcome outcome = flow(run().stop);
-    // Where the source is a stream, it has ended early.
-    report_.interrupted = outcome.interrupted ||
-                          (run().pairs.is_stream() && run().stop != nullptr && run().stop->load());
+    try {
+      const scheduler::FrameOutcome outcome = flow(run().stop);
+      // Where the source is a stream, it has ended early.
+      report_.interrupted = outcome.interrupted || (run().pairs.is_stream() &&
+                                                    run().stop != nullptr && run().stop->load());
+    } catch (const scheduler::Interrupted&) {  // the reader did not take the rest
+      report_.interrupted = true;
+    }
     add_totals(report_);
     return std::move(report_);
   }

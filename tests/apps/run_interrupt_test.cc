@@ -1,9 +1,14 @@
 // Runs that are asked to stop, and clocks that jump.
 
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+
 #include <chrono>
 #include <csignal>
 #include <thread>
 
+#include "engine/io/files/file_descriptor.h"
 #include "tests/apps/preloaded.h"
 
 namespace vantage::run_interrupt_test {
@@ -107,6 +112,35 @@ TEST_F(InterruptedRun, ASecondSignalKills) {
   }
   const int exit_code = process.wait().exit_code;
   EXPECT_TRUE(exit_code == 128 + SIGINT || exit_code == 130) << exit_code;
+}
+
+/// Nobody reads what the run writes: one signal is enough, as if somebody did.
+TEST_F(InterruptedRun, AReaderThatDoesNotReadHoldsNothingUp) {
+  for (const int signal : {SIGINT, SIGHUP}) {
+    const TemporaryFolder streams;
+    const std::string pipe = streams / "stdout";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    const FileDescriptor reader(::open(pipe.c_str(), O_RDWR | O_CLOEXEC));
+    const std::string report = folder_ / "report.json";
+    const VantageProcess process(
+        arguments("-", {"--save", "preview", "--method", "ssd", "--report", report}),
+        streams.path());
+    pollfd room{reader.get(), POLLOUT, 0};
+    while (::poll(&room, 1, 0) > 0 && !process.has_ended()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    process.send(signal);
+    for (int wait = 0; wait < 1500 && !process.has_ended(); ++wait) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    process.send(SIGKILL);
+    fs::remove(pipe);
+    write_file(pipe, "");
+    const ProcessResult result = process.wait();
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_THAT(result.err, HasSubstr("-> standard output (interrupted)"));
+    EXPECT_EQ(read_json(report)["results"]["interrupted"], true);
+  }
 }
 
 using InterruptedMatch = RunTest;

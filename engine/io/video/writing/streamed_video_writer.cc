@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <variant>
 
-#include "engine/error.h"
 #include "engine/image/eight_bit.h"
 #include "engine/io/video/libav_scaler.h"
 
@@ -18,18 +17,19 @@ extern "C" {
 }
 
 namespace vantage {
+namespace {
 
-StreamedVideoWriter::StreamedVideoWriter(std::FILE* stream, StreamFormat format, FrameRate rate,
-                                         const FilmFormat& film)
-    : stream_(stream), format_(format), rate_(rate), film_(film) {}
-
-void StreamedVideoWriter::put(const void* bytes, std::size_t count) {
-  if (std::fwrite(bytes, 1, count, stream_) != count) {
-    throw Error(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-  }
+void add(std::vector<std::uint8_t>& bytes, std::string_view text) {
+  bytes.insert(bytes.end(), text.begin(), text.end());
 }
 
-void StreamedVideoWriter::put_header(const AVFrame& frame, bool is_grey) {
+}  // namespace
+
+StreamedVideoWriter::StreamedVideoWriter(StreamOutput output, StreamFormat format, FrameRate rate,
+                                         const FilmFormat& film)
+    : output_(std::move(output)), format_(format), rate_(rate), film_(film) {}
+
+void StreamedVideoWriter::add_header(const AVFrame& frame, bool is_grey) {
   const bool has_10_bits = describe_pixel_format(frame.format).comp[0].depth == 10;
   const std::string header = fmt::format(
       "YUV4MPEG2 W{} H{} F{}:{} Ip A{}:{} C{} XCOLORRANGE={}\n", frame.width, frame.height,
@@ -38,35 +38,35 @@ void StreamedVideoWriter::put_header(const AVFrame& frame, bool is_grey) {
       : has_10_bits ? "420p10 XYSCSS=420P10"
                     : "420mpeg2",
       frame.color_range == AVCOL_RANGE_JPEG ? "FULL" : "LIMITED");
-  put(header.data(), header.size());
+  add(bytes_, header);
   has_header_ = true;
 }
 
-void StreamedVideoWriter::put_planes(const AVFrame& frame) {
+void StreamedVideoWriter::add_planes(const AVFrame& frame) {
   const auto format = static_cast<AVPixelFormat>(frame.format);
-  planes_.resize(
-      static_cast<std::size_t>(av_image_get_buffer_size(format, frame.width, frame.height, 1)));
-  av_image_copy_to_buffer(planes_.data(), static_cast<int>(planes_.size()), frame.data,
-                          frame.linesize, format, frame.width, frame.height, 1);
-  put(planes_.data(), planes_.size());
+  const std::size_t before = bytes_.size();
+  const int size = av_image_get_buffer_size(format, frame.width, frame.height, 1);
+  bytes_.resize(before + static_cast<std::size_t>(size));
+  av_image_copy_to_buffer(bytes_.data() + before, size, frame.data, frame.linesize, format,
+                          frame.width, frame.height, 1);
 }
 
-void StreamedVideoWriter::put_rgb(const Photograph& frame) {
+void StreamedVideoWriter::add_rgb(const Photograph& frame) {
   const Image<std::uint8_t> image = eight_bit(frame);
-  std::vector<std::uint8_t> row(3 * static_cast<std::size_t>(image.width()));
+  const std::size_t row_bytes = 3 * static_cast<std::size_t>(image.width());
   for (int y = 0; y < image.height(); ++y) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      row[i] = image.channels() == 3 ? image.row(y)[i] : image.row(y)[i / 3];
+    for (std::size_t i = 0; i < row_bytes; ++i) {
+      bytes_.push_back(image.channels() == 3 ? image.row(y)[i] : image.row(y)[i / 3]);
     }
-    put(row.data(), row.size());
   }
 }
 
 void StreamedVideoWriter::write(const Photograph& frame) {
   const bool is_grey =
       std::holds_alternative<Image<std::uint16_t>>(frame.pixels) && frame.channels() == 1;
+  bytes_.clear();
   if (format_ == StreamFormat::kRawVideo && !is_grey) {
-    put_rgb(frame);
+    add_rgb(frame);
   } else {
     if (!convert_) {
       convert_ = make_frame_conversion(is_grey                  ? VideoCoding::kFfv1_16
@@ -77,15 +77,13 @@ void StreamedVideoWriter::write(const Photograph& frame) {
     const LibavFrame converted = convert_(frame);
     if (format_ == StreamFormat::kY4m) {
       if (!has_header_) {
-        put_header(*converted, is_grey);
+        add_header(*converted, is_grey);
       }
-      put("FRAME\n", 6);
+      add(bytes_, "FRAME\n");
     }
-    put_planes(*converted);
+    add_planes(*converted);
   }
-  if (std::fflush(stream_) != 0) {
-    throw Error(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-  }
+  output_.put(bytes_);
 }
 
 }  // namespace vantage

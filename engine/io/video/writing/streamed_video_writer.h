@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <vector>
 
 #include "engine/image/photograph.h"
@@ -10,6 +9,7 @@
 #include "engine/io/video/libav.h"
 #include "engine/io/video/raw_video_shape.h"
 #include "engine/io/video/writing/frame_conversion.h"
+#include "engine/io/video/writing/stream_output.h"
 
 namespace vantage {
 
@@ -20,26 +20,24 @@ namespace vantage {
 class StreamedVideoWriter {
  public:
   /// `film`: what the pictures are made of.
-  StreamedVideoWriter(std::FILE* stream, StreamFormat format, FrameRate rate,
+  StreamedVideoWriter(StreamOutput output, StreamFormat format, FrameRate rate,
                       const FilmFormat& film);
 
-  /// All frames have the size and the depth of the first one. Throws Error when nobody reads
-  /// the stream any longer, or the disk is full.
+  /// All frames have the size and the depth of the first one. Throws what StreamOutput::put() does.
   void write(const Photograph& frame);
 
  private:
-  void put(const void* bytes, std::size_t count);
-  void put_header(const AVFrame& frame, bool is_grey);
-  void put_planes(const AVFrame& frame);
-  void put_rgb(const Photograph& frame);
+  void add_header(const AVFrame& frame, bool is_grey);
+  void add_planes(const AVFrame& frame);
+  void add_rgb(const Photograph& frame);
 
-  std::FILE* stream_;
+  StreamOutput output_;
   StreamFormat format_;
   FrameRate rate_;
   FilmFormat film_;
   bool has_header_ = false;
   FrameConversion convert_;
-  std::vector<std::uint8_t> planes_;
+  std::vector<std::uint8_t> bytes_;  ///< of the frame
 };
 
 }  // namespace vantage
