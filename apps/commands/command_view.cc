@@ -8,8 +8,10 @@
 #include "apps/pages/view_page.h"
 #include "apps/process/command_work.h"
 #include "apps/process/outputs.h"
+#include "apps/process/progress.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
+#include "apps/run/run_film.h"
 #include "apps/settings/command_line.h"
 #include "apps/settings/common_options.h"
 #include "engine/error.h"
@@ -49,9 +51,9 @@ void add_page_settings(Settings& settings, ViewPageOptions& page) {
                     "Range of positions along the baseline: 0 left camera, 1 right camera");
   add_range_setting(settings, "vertical-range", page.range_y,
                     "Range of vertical positions in baselines, positive downwards; 0:0: none");
-  settings.choice<PageImages>("images", page.images,
-                              {{"png", PageImages::kPng}, {"jpeg", PageImages::kJpeg}},
-                              "Image format in the page: lossless, or smaller");
+  settings.choice<PageImages>(
+      "images", page.images, {{"png", PageImages::kPng}, {"jpeg", PageImages::kJpeg}},
+      "Image format in the page: lossless (png), or smaller; auto: jpeg of a run, else png");
   settings.start_group("View synthesis");
   settings.choice<HoleFilling>(
       "holes", page.synthesis.holes,
@@ -67,12 +69,77 @@ std::string file_name(const std::string& path) {
   return std::filesystem::path(path).filename().string();
 }
 
+/// Whether LEFT is the folder of a run. Throws UsageError for options of a pair beside it.
+bool shows_run(const ViewJob& job, const Settings& settings) {
+  std::error_code none;
+  if (!job.pair.right.empty() || !std::filesystem::is_directory(job.pair.left, none)) {
+    return false;
+  }
+  PairInput unused;
+  Settings of_pairs("view", "");
+  add_pair_settings(of_pairs, unused);
+  add_match_settings(of_pairs, unused.match);
+  const SettingValue options = of_pairs.values();
+  for (const auto& [name, value] : options.items()) {
+    if (name != "left") {
+      settings.refuse_idle({name.c_str()}, "with the folder of a run");
+    }
+  }
+  return true;
+}
+
+/// Writes the page and, in a folder beside it, the script of each frame.
+int view_run(const ViewJob& job, const Settings& settings, FileChecks& files) {
+  namespace fs = std::filesystem;
+  const fs::path output = job.output;
+  const fs::path folder = output.parent_path() / (output.stem().string() + "-frames");
+  files.add_made_folder(folder, "--output");
+  RunFilm film(job.pair.left);
+  for (const fs::path& file : film.pairs().files()) {
+    files.add_input(file);
+  }
+  CommandWork work(settings, job.common);
+  make_folder(folder);
+  ViewPage page(job.page, folder.filename().string());
+  std::size_t bytes = 0;
+  int shown = 0;
+  Progress progress("view", "frames",
+                    job.common.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
+  const FrameRange frames = film.frames();
+  for (int frame = frames.first; frame < frames.end; ++frame) {
+    if (const std::string problem = film.problem(frame); !problem.empty()) {
+      page.add_missing(frame, problem);
+      continue;
+    }
+    const PairWithMaps pair =
+        work.report.timed_file_access("read", [&] { return film.read(frame, work.execution); });
+    const std::string script = work.report.timed_compute(
+        "page", [&] { return page.add_frame(frame, pair, work.execution); });
+    work.report.timed_file_access(
+        "write", [&] { write_text_file(folder / ViewPage::script_name(frame), script); });
+    bytes += script.size();
+    progress.update(++shown, frames.count(), 0);
+  }
+  if (shown == 0) {
+    throw Error(fmt::format("{}: none of its frames is there", job.pair.left));
+  }
+  write_text_file(output, page.html(job.pair.left, film.rate(), ""));
+  const int missing = frames.count() - shown;
+  return work.finish(
+      {{"frames", shown}, {"frames_missing", missing}, {"page_bytes", bytes}},
+      fmt::format("{} frames{}, {:.1f} MB -> {} and {}", shown,
+                  missing > 0 ? fmt::format(" ({} missing)", missing) : std::string(),
+                  static_cast<double>(bytes) / 1e6, job.output, folder.string()));
+}
+
 }  // namespace
 
 int command_view(const Arguments& arguments) {
   ViewJob job;
-  Settings settings("view",
-                    "Writes a self-contained web page that renders new views of a rectified pair.");
+  Settings settings(
+      "view",
+      "Writes a web page that renders new views of a rectified pair, or of the frames "
+      "of a run.");
   settings.start_group("Files");
   add_pair_settings(settings, job.pair);
   Setting& output = settings.path("output", job.output, "FILE.html", "Path to the page");
@@ -85,7 +152,7 @@ int command_view(const Arguments& arguments) {
   settings.set_short_help(
       {"left", "right", "left-disparity", "right-disparity", "calibration", "output", "range",
        "vertical-range", "images", "holes", "disparities", "preset", "threads", "quiet"},
-      {"vantage view left.png right.png -o pair.html",
+      {"vantage view left.png right.png -o pair.html", "vantage view results -o film.html",
        "vantage view left.png right.png -o pair.html --images jpeg --range 0:1",
        "vantage view left.jpg right.jpg --calibration rig.yml -o pair.html"});
   if (!read_command_line(settings, arguments)) {
@@ -94,18 +161,27 @@ int command_view(const Arguments& arguments) {
   job.page.validate();
   check_combining(settings, job.page.synthesis);
   job.common.execution.validate();
-  check_pair(job.pair, settings);
+  const bool is_of_run = shows_run(job, settings);
+  if (!is_of_run) {
+    check_pair(job.pair, settings);
+  }
   FileChecks files(settings);
   files.add_output(job.output, "--output", OutputKind::kPage);
   check_common_files(job.common, files);
+  if (is_of_run) {
+    return view_run(job, settings, files);
+  }
 
   CommandWork work(settings, job.common, reported_settings(settings, job.pair));
   RunReport& report = work.report;
   Execution& execution = work.execution;
   const PairWithMaps pair = read_pair(job.pair, settings, job.common, execution, report);
   const std::string names = file_name(job.pair.left) + " and " + file_name(job.pair.right);
-  const std::string page = report.timed_compute(
-      "page", [&] { return make_view_page(pair, names, job.page, execution); });
+  const std::string page = report.timed_compute("page", [&] {
+    ViewPage made(job.page, "");
+    const std::string script = made.add_frame(0, pair, execution);
+    return made.html(names, {}, script);
+  });
   report.timed_file_access("write", [&] { write_text_file(job.output, page); });
 
   return work.finish(

@@ -1,10 +1,13 @@
 #pragma once
 
-#include <array>
+#include <optional>
 #include <string>
 
 #include "apps/inputs/pair_input.h"
 #include "engine/execution.h"
+#include "engine/io/images/preview.h"
+#include "engine/io/video/frame_rate.h"
+#include "engine/options/setting_value.h"
 #include "engine/synthesis/synthesis_options.h"
 
 namespace vantage::apps {
@@ -22,9 +25,9 @@ struct ViewRange {
 };
 
 struct ViewPageOptions {
-  ViewRange range_x{-0.5, 1.5};  ///< XS: 0 = left camera, 1 = right camera
-  ViewRange range_y{-0.2, 0.2};  ///< YS: below the baseline where positive
-  PageImages images = PageImages::kPng;
+  ViewRange range_x{-0.5, 1.5};      ///< XS: 0 = left camera, 1 = right camera
+  ViewRange range_y{-0.2, 0.2};      ///< YS: below the baseline where positive
+  std::optional<PageImages> images;  ///< empty: PNG of a pair, JPEG of a film
   /// Only holes, gamma, disparity_gradient_limit_px and match_intensities are used.
   SynthesisOptions synthesis;
 
@@ -32,23 +35,36 @@ struct ViewPageOptions {
   void validate() const;
 };
 
-/// How the page stores disparities: as whole numbers 1..65535, 0 = unknown.
-struct DisparityNumbers {
-  double smallest_px = 0;  ///< of the number 1; a multiple of step_px
-  double step_px = 1;      ///< a power of two
+/// An HTML page that renders views of a pair, or of the frames of a film, by itself. Photographs
+/// become 8-bit and lose an alpha channel. Intensities are regressed once for each pair, half-way
+/// between the cameras, so that brightness does not change on the way. In JPEG, disparities are
+/// rounded to 1/32 pixel. Thread rule: one thread at a time.
+class ViewPage {
+ public:
+  /// `folder`: name of the folder beside the page that holds the script of each frame; empty: the
+  /// page shows one pair, which is in it. Throws UsageError for invalid options.
+  ViewPage(ViewPageOptions options, std::string folder);
+
+  /// Adds a frame; numbers increase. Returns its script, the file script_name(number) of the
+  /// folder. Throws Error when shapes differ, also from the first frame's, a side has more than
+  /// 16384 pixels, or disparities cannot be stored.
+  std::string add_frame(int number, const PairWithMaps& pair, Execution& execution);
+  /// Adds a frame that cannot be shown.
+  void add_missing(int number, const std::string& problem);
+  static std::string script_name(int number);
+
+  /// The page of the frames added, of which there is one at least. `names`: what it says it shows.
+  /// `script`: of the pair, where there is no folder.
+  [[nodiscard]] std::string html(const std::string& names, FrameRate rate,
+                                 const std::string& script) const;
+
+ private:
+  ViewPageOptions options_;
+  bool is_lossless_;
+  std::string folder_;
+  SettingValue scene_;  ///< null before the first frame
+  SettingValue frames_ = SettingValue::array();
+  PreviewRange colours_;  ///< of the maps of all frames
 };
-
-/// The finest step in which all known values of both maps can be stored. Throws Error when that is
-/// coarser than 1/16 pixel, which is the case when they span more than 4095 pixels.
-DisparityNumbers choose_disparity_numbers(ImageView<const float> left,
-                                          ImageView<const float> right);
-
-/// An HTML page that renders views of the pair by itself, with everything it needs inside. `names`
-/// is what it says it shows. Photographs become 8-bit and lose an alpha channel. Intensities are
-/// regressed once, half-way between the cameras, so that brightness does not change on the way.
-/// Throws Error when the shapes differ, a side has more than 16384 pixels, or disparities cannot be
-/// stored; UsageError for invalid options.
-std::string make_view_page(const PairWithMaps& pair, const std::string& names,
-                           const ViewPageOptions& options, Execution& execution);
 
 }  // namespace vantage::apps

@@ -48,20 +48,22 @@ class ViewCommand : public PairTest {
   static nlohmann::json scene_of(const std::string& page) {
     return nlohmann::json::parse(between(page, "id=\"scene\">", "</script>"));
   }
-  /// The picture of an <img> element.
+  /// The numbers and pictures of the pair.
+  static nlohmann::json frame_of(const std::string& page) {
+    return nlohmann::json::parse(between(page, "Film.deliver(0, ", ");\n"));
+  }
   [[nodiscard]] Image<std::uint8_t> picture_in(const std::string& page,
                                                const std::string& name) const {
-    const std::string element = between(page, "id=\"" + name + "\"", ">");
-    const auto bytes = test::decoded_base64(between(element, "base64,", "\""));
+    const auto bytes = test::decoded_base64(frame_of(page)[name].get<std::string>());
     const std::string file = folder_ / (name + ".png");
     write_file(file, {bytes.begin(), bytes.end()});
     return std::move(std::get<Image<std::uint8_t>>(read_photograph(file).pixels));
   }
   [[nodiscard]] DisparityMap map_in(const std::string& page, const std::string& name) const {
     const Image<std::uint8_t> numbers = picture_in(page, name);
-    const nlohmann::json scene = scene_of(page);
-    const double smallest = scene["disparity"]["smallest"];
-    const double step = scene["disparity"]["step"];
+    const nlohmann::json frame = frame_of(page);
+    const double smallest = frame["disparity"]["smallest"];
+    const double step = frame["disparity"]["step"];
     DisparityMap map(numbers.width(), numbers.height());
     for (int y = 0; y < map.height(); ++y) {
       for (int x = 0; x < map.width(); ++x) {
@@ -97,7 +99,7 @@ TEST_F(ViewCommand, HoldsThePhotographsAndTheMaps) {
   write_maps();
   const std::string text = page();
   for (const auto& [name, photograph] :
-       {std::pair("left-image", &pair_.left), std::pair("right-image", &pair_.right)}) {
+       {std::pair("left", &pair_.left), std::pair("right", &pair_.right)}) {
     const Image<std::uint8_t> picture = picture_in(text, name);
     const auto& expected = std::get<Image<std::uint8_t>>(photograph->pixels);
     ASSERT_EQ(picture.width(), expected.width());
@@ -111,8 +113,8 @@ TEST_F(ViewCommand, HoldsThePhotographsAndTheMaps) {
     EXPECT_EQ(different, 0) << name;
   }
   // Whole disparities are numbers of steps, so nothing is rounded.
-  EXPECT_EQ(largest_difference(map_in(text, "left-map"), pair_.left_disparity), 0);
-  EXPECT_EQ(largest_difference(map_in(text, "right-map"), pair_.right_disparity), 0);
+  EXPECT_EQ(largest_difference(map_in(text, "leftMap"), pair_.left_disparity), 0);
+  EXPECT_EQ(largest_difference(map_in(text, "rightMap"), pair_.right_disparity), 0);
 }
 
 TEST_F(ViewCommand, StoresAnyDisparitiesAsFinelyAsTheirRangeAllows) {
@@ -129,8 +131,8 @@ TEST_F(ViewCommand, StoresAnyDisparitiesAsFinelyAsTheirRangeAllows) {
     fill(pair_.right_disparity, smallest, largest);
     write_maps();
     const std::string text = page();
-    return std::pair(scene_of(text)["disparity"]["step"].get<double>(),
-                     largest_difference(map_in(text, "left-map"), pair_.left_disparity));
+    return std::pair(frame_of(text)["disparity"]["step"].get<double>(),
+                     largest_difference(map_in(text, "leftMap"), pair_.left_disparity));
   };
   for (const auto& [smallest, largest, expected_step] :
        {std::tuple(-3.3F, 12.6F, 1.0 / 4096), std::tuple(7.7F, 7.7F, 1.0 / 4096),
@@ -159,7 +161,7 @@ TEST_F(ViewCommand, IsOneFileThatNamesNoOther) {
        found != std::sregex_iterator(); ++found, ++sources) {
     EXPECT_EQ((*found)[2], "data:image");
   }
-  EXPECT_EQ(sources, 5);
+  EXPECT_EQ(sources, 1);  // the palette
 }
 
 TEST_F(ViewCommand, OptionsReachThePage) {
@@ -172,21 +174,24 @@ TEST_F(ViewCommand, OptionsReachThePage) {
   EXPECT_EQ(usual["holes"], "mirror");
   EXPECT_EQ(usual["softEdges"], true);
   EXPECT_EQ(usual["gradientLimit"], 1.0);
-  EXPECT_NEAR(usual["intensity"]["gain"][0], 1.0, 0.1);
+  EXPECT_NEAR(frame_of(page())["intensity"]["gain"][0], 1.0, 0.1);
 
-  const nlohmann::json other =
-      scene_of(page(words("--range=0:1 --vertical-range=0:0 --holes spread --gradient-limit 2.5 "
-                          "--no-intensity-matching")));
+  const std::string text =
+      page(words("--range=0:1 --vertical-range=0:0 --holes spread --gradient-limit 2.5 "
+                 "--no-intensity-matching"));
+  const nlohmann::json other = scene_of(text);
   EXPECT_THAT(other["rangeX"], ElementsAre(0.0, 1.0));
   EXPECT_THAT(other["rangeY"], ElementsAre(0.0, 0.0));
   EXPECT_EQ(scene_of(page({"--gamma", "0.25"}))["gamma"], 0.25);
   EXPECT_EQ(other["holes"], "spread");
   EXPECT_EQ(other["gradientLimit"], 2.5);
-  EXPECT_THAT(other["intensity"]["gain"], ElementsAre(1.0, 1.0, 1.0));
-  EXPECT_THAT(other["intensity"]["offset"], ElementsAre(0.0, 0.0, 0.0));
+  const nlohmann::json intensity = frame_of(text)["intensity"];
+  EXPECT_THAT(intensity["gain"], ElementsAre(1.0, 1.0, 1.0));
+  EXPECT_THAT(intensity["offset"], ElementsAre(0.0, 0.0, 0.0));
 
-  const std::string jpeg = page({"--images", "jpeg"});
-  EXPECT_THAT(jpeg, HasSubstr("id=\"left-image\" alt=\"\" src=\"data:image/jpeg;base64,/9j/"));
+  const nlohmann::json jpeg = frame_of(page({"--images", "jpeg"}));
+  EXPECT_EQ(jpeg["type"], "image/jpeg");
+  EXPECT_EQ(jpeg["left"].get<std::string>().substr(0, 4), "/9j/");
 }
 
 TEST_F(ViewCommand, NamesOfFilesCannotChangeThePage) {
@@ -211,7 +216,7 @@ TEST_F(ViewCommand, DeepAndTransparentPhotographsBecomeEightBitColours) {
   const Photograph photograph{std::move(deep)};
   write_photograph(left_, photograph);
   write_photograph(right_, photograph);
-  const Image<std::uint8_t> picture = picture_in(page(), "left-image");
+  const Image<std::uint8_t> picture = picture_in(page(), "left");
   EXPECT_EQ(picture.channels(), 3);
   EXPECT_EQ(picture.at(70, 0, 0), 70);
   EXPECT_EQ(picture.at(0, 52, 1), 52);
@@ -224,7 +229,7 @@ TEST_F(ViewCommand, MatchesThePairWithoutMaps) {
   const auto report = read_json(folder_ / "r.json");
   EXPECT_EQ(report["cells"], 71.0 * 53 * 10 * 2);
   EXPECT_EQ(report["results"]["page_bytes"], fs::file_size(outputs_ + "/p.html"));
-  const DisparityMap map = map_in(read_file(outputs_ + "/p.html"), "left-map");
+  const DisparityMap map = map_in(read_file(outputs_ + "/p.html"), "leftMap");
   EXPECT_LT(bad_share(map, pair_.left_disparity, pair_.left_occluded), 0.05);
 }
 
@@ -248,6 +253,30 @@ TEST_F(InputViewCommand, WrongUsageIsOneLineAndExit2) {
        "--window has no effect"}};
   expect_refusals("view", folder_.path(), refusals,
                   [&](const Words& words) { return view(words); });
+}
+
+TEST_F(InputViewCommand, FoldersAreThoseOfRunsWithBothMaps) {
+  const std::string pairs = folder_ / "pairs";
+  for (const auto& [side, image] : {std::pair("/left", left_), std::pair("/right", right_)}) {
+    fs::create_directories(pairs + side);
+    fs::copy(image, pairs + side + "/0.png");
+  }
+  const auto run = [&](const std::string& save, const std::string& name) {
+    succeeds(run_vantage({"run", "--left", pairs + "/left", "--right", pairs + "/right", "--save",
+                          save, "--disparities", "0:9", "-o", folder_ / name, "--quiet"}));
+    return folder_ / name;
+  };
+  const auto refuse = [&](const Words& words, int code, const std::string& says) {
+    const Words page = {"view", "-o", outputs_ + "/p.html"};
+    expect_one_line(run_vantage(joined(page, words)), code, "view", says);
+    EXPECT_THAT(files_below(outputs_), IsEmpty());
+  };
+  const std::string whole = run("disparity,right-disparity", "whole");
+  refuse({pairs}, 1, "holds no run");
+  refuse({run("disparity", "half")}, 1, "--save disparity,right-disparity");
+  refuse({whole, "--preset", "fast"}, 2, "--preset has no effect with the folder of a run");
+  write_photograph(pairs + "/left/0.png", read_photograph(right_));
+  refuse({whole}, 1, "is of another input");
 }
 
 TEST_F(InputViewCommand, InputsThatDoNotFitAreAnErrorAndLeaveNothing) {

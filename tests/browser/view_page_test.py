@@ -68,6 +68,14 @@ def psnr_db(a, b):
     return math.inf if squares == 0 else 10 * math.log10(255 ** 2 * len(a) / squares)
 
 
+def status_of(tab):
+    """"ready" or "failed", once the page has drawn its first view or cannot."""
+    return tab.evaluate("new Promise((resolve) => { const look = () => {"
+                        " const {status} = document.documentElement.dataset;"
+                        " if (status) { resolve(status); } else { setTimeout(look, 10); } };"
+                        " look(); })")
+
+
 class ViewPageTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -86,7 +94,7 @@ class ViewPageTest(unittest.TestCase):
         # Small: the processor draws, and what is drawn while the view moves takes most of the time.
         tab = Tab(self.browser, (page or self.page).as_uri() + address, width=400, height=400)
         self.addCleanup(tab.close)
-        self.assertEqual(tab.evaluate("document.documentElement.dataset.status"), status,
+        self.assertEqual(status_of(tab), status,
                          (tab.text("message"), tab.complaints()))
         return tab
 
@@ -322,7 +330,7 @@ class ViewPageTest(unittest.TestCase):
     def test_a_browser_without_webgl_says_so(self):
         with Browser("--disable-3d-apis") as browser:
             tab = Tab(browser, self.page.as_uri())
-            self.assertEqual(tab.evaluate("document.documentElement.dataset.status"), "failed")
+            self.assertEqual(status_of(tab), "failed")
             self.assertIn("WebGL 2", tab.text("message"))
 
 

@@ -3,11 +3,12 @@
 // The page: where the viewer is, what is shown, and who may say so.
 //
 // A position (x, y) is in baselines: x = 0 is the left camera, x = 1 the right one, y > 0 below them.
-// It comes from the mouse or a finger, the sliders or the keys.
+// It comes from the mouse or a finger, the sliders or the keys. In a film the space bar plays.
 //
 // The address may say what is shown, "page.html#x=0.5,y=0,mode=disparity" (or with ? and &):
 //   x, y     the position; the view then stands still until somebody moves it with the mouse
 //   mode     a value of the list of modes
+//   frame    number of a frame of the film;  play=1  plays it
 //   yaw, pitch, zoom   of the point cloud: degrees to the right and upwards, and how much nearer
 //   sway=1   sways from the start;  bare=1  hides the controls
 //   render=native  renders a view for every x that is given, with the y of the same number or the
@@ -33,10 +34,13 @@
     mode: "view", held: false, swaying: false, swayStart: 0, lastTime: 0, scheduled: false,
   };
   let renderer = null;
+  const film = new Film(scene, showFrame);
+  let headset = null;
   const orbit = new Orbit(canvas, () => state.mode === "cloud", () => schedule());
 
   function fail(text) {
     element("message").textContent = text;
+    element("message").className = "";
     element("message").hidden = false;
     document.documentElement.dataset.status = "failed";
   }
@@ -48,20 +52,11 @@
            "Any current browser has it; look for hardware or graphics acceleration in the settings.");
       return;
     }
-    const pictures = {left: element("left-image"), right: element("right-image"),
-                      leftMap: element("left-map"), rightMap: element("right-map"),
-                      palette: element("palette")};
-    for (const [name, picture] of Object.entries(pictures)) {
-      if (!picture.complete || picture.naturalWidth === 0) {
-        fail(`The picture "${name}" of this file is damaged.`);
-        return;
-      }
-    }
     const shared = element("disparity.glsl").textContent;
     const head = "#version 300 es\nprecision highp float;\nprecision highp int;\n" +
                  "precision highp sampler2D;\n";
     try {
-      renderer = new Renderer(gl, scene, pictures,
+      renderer = new Renderer(gl, scene, element("palette"),
                               (name) => head + shared + element(name).textContent);
     } catch (error) {
       if (!(error instanceof RendererError)) {
@@ -75,7 +70,7 @@
   // -- Drawing
 
   function schedule() {
-    if (renderer && !state.scheduled) {
+    if (renderer?.frame && !state.scheduled && !headset?.session) {
       state.scheduled = true;
       requestAnimationFrame(drawNext);
     }
@@ -104,8 +99,9 @@
       state[now] = near ? state[target] : state[now] + step * rest;
       arrived = arrived && near;
     }
+    film.advance(time);
     draw();
-    if (!arrived || state.swaying) {
+    if (!arrived || state.swaying || film.isPlaying) {
       schedule();
     }
   }
@@ -142,6 +138,62 @@
       element(axis).value = state[axis];
       element(`${axis}-value`).textContent = state[axis].toFixed(3);
     }
+  }
+
+  // -- The film
+
+  // A frame that is missing leaves the picture as it was, and says so.
+  function showFrame(frame) {
+    element("time").value = film.index;
+    element("time-value").textContent = `${frame.number}`;
+    element("message").className = "note";
+    element("message").hidden = !frame.problem;
+    element("message").textContent = `Frame ${frame.number}: ${frame.problem}`;
+    if (frame.pictures) {
+      renderer?.setFrame(frame);
+    }
+    schedule();
+  }
+
+  function setPlaying(on) {
+    film.isPlaying = on;
+    element("play").setAttribute("aria-pressed", on);
+    element("play").textContent = on ? "Pause" : "Play";
+    schedule();
+  }
+
+  function goBy(frames) {
+    setPlaying(false);
+    film.goTo(film.wanted + frames);
+  }
+
+  function listenToFilm() {
+    element("film-group").hidden = film.frames.length === 1;
+    element("time").max = film.frames.length - 1;
+    element("time").addEventListener("input", () => {
+      setPlaying(false);
+      film.goTo(Number(element("time").value));
+    });
+    element("play").addEventListener("click", () => setPlaying(!film.isPlaying));
+    element("back").addEventListener("click", () => goBy(-1));
+    element("forth").addEventListener("click", () => goBy(1));
+    element("speed").addEventListener("change", () => {
+      film.speed = Number(element("speed").value);
+    });
+  }
+
+  async function offerHeadset() {
+    element("headset").hidden = !await Headset.isThere();
+    element("headset").addEventListener("click", async () => {
+      headset = new Headset(renderer, (time) => film.advance(time),
+                            () => setPlaying(!film.isPlaying && film.frames.length > 1));
+      try {
+        await headset.enter(schedule);
+      } catch (error) {
+        element("headset").title = error.message;
+        element("headset").disabled = true;
+      }
+    });
   }
 
   // -- Moving
@@ -253,7 +305,9 @@
       "ArrowLeft": () => move(-stepX, 0), "ArrowRight": () => move(stepX, 0),
       "ArrowUp": () => move(0, -stepY), "ArrowDown": () => move(0, stepY),
       "+": () => orbit.approach(0.9), "-": () => orbit.approach(1 / 0.9),
-      "0": () => orbit.reset(), " ": () => setSway(!state.swaying), "h": toggleControls, "f": toggleFullScreen,
+      "0": () => orbit.reset(), ",": () => goBy(-1), ".": () => goBy(1), "s": () => setSway(!state.swaying),
+      " ": () => film.frames.length > 1 ? setPlaying(!film.isPlaying) : setSway(!state.swaying),
+      "h": toggleControls, "f": toggleFullScreen,
     };
     modes.forEach((mode, index) => {
       actions[String(index + 1)] = () => setMode(mode);
@@ -280,6 +334,12 @@
       .filter(Number.isFinite);
   }
 
+  // Its index; -1: none is addressed.
+  function addressedFrame() {
+    const wanted = addressed().get("frame");
+    return film.frames.findIndex(({number}) => String(number) === wanted);
+  }
+
   function followAddress() {
     const parameters = addressed();
     const [x, y] = ["x", "y"].map((name) => numbers(parameters, name)[0]);
@@ -295,6 +355,12 @@
     }
     if ([...element("mode").options].some((option) => option.value === parameters.get("mode"))) {
       setMode(parameters.get("mode"));
+    }
+    if (addressedFrame() >= 0) {
+      film.goTo(addressedFrame());
+    }
+    if (parameters.get("play") === "1" && film.frames.length > 1) {
+      setPlaying(true);
     }
     document.body.classList.toggle("bare", parameters.get("bare") === "1");
     if (parameters.get("sway") === "1") {
@@ -328,7 +394,7 @@
 
   // -- Start
 
-  function start() {
+  async function start() {
     for (const [axis, range] of [["x", scene.rangeX], ["y", scene.rangeY]]) {
       [element(axis).min, element(axis).max] = range;
       element(axis).disabled = range[0] === range[1];
@@ -349,11 +415,19 @@
     });
     canvas.addEventListener("webglcontextrestored", () => {
       makeRenderer();
-      schedule();
+      showFrame(film.kept.get(film.index).frame);
     });
     listenToPointer();
     listenToControls();
     listenToKeys();
+    listenToFilm();
+    await film.goTo(film.frames.findIndex(({problem}) => !problem));
+    if (!renderer.frame) {
+      fail(element("message").textContent);
+      return;
+    }
+    offerHeadset();
+    await film.goTo(addressedFrame() < 0 ? film.index : addressedFrame());
     window.addEventListener("hashchange", followAddress);
     new ResizeObserver(schedule).observe(canvas);
     followAddress();

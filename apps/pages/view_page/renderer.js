@@ -7,8 +7,8 @@
 class RendererError extends Error {}
 
 class Renderer {
-  // scene: the numbers of the page. images: its decoded pictures, by name. shaderText: name => text.
-  constructor(gl, scene, images, shaderText) {
+  // scene: the numbers of the page. palette: its picture of colours. shaderText: name => text.
+  constructor(gl, scene, palette, shaderText) {
     this.gl = gl;
     this.scene = scene;
     const largest = gl.getParameter(gl.MAX_TEXTURE_SIZE);
@@ -28,11 +28,18 @@ class Renderer {
       rows: this.makeProgram(screen, shaderText("rows.frag")),
       show: this.makeProgram(screen, shaderText("show.frag")),
       cloud: this.makeProgram(shaderText("cloud.vert"), shaderText("cloud.frag")),
+      headset: this.makeProgram(shaderText("headset.vert"), shaderText("show.frag")),
     };
-    this.textures = {};
-    for (const name of ["left", "right", "leftMap", "rightMap", "palette"]) {
-      this.textures[name] = this.makePicture(images[name], name === "left" || name === "right");
-    }
+    const {width, height} = scene;
+    this.textures = {
+      left: this.makeTexture(gl.RGBA8, width, height, gl.LINEAR),
+      right: this.makeTexture(gl.RGBA8, width, height, gl.LINEAR),
+      leftMap: this.makeTexture(gl.RGBA8, width, height, gl.NEAREST),
+      rightMap: this.makeTexture(gl.RGBA8, width, height, gl.NEAREST),
+      palette: this.makeTexture(gl.RGBA8, palette.naturalWidth, 1, gl.NEAREST),
+    };
+    this.fill("palette", palette);
+    this.frame = null;
     this.warped = [this.makeWarpTarget(), this.makeWarpTarget()];
     this.steps = [this.makeViewTarget(), this.makeViewTarget()];
     this.view = this.makeViewTarget();
@@ -88,19 +95,25 @@ class Renderer {
     return 1 + Math.floor(Math.log2(Math.max(width, height)));
   }
 
-  // The values as they are in the file: colour management would change bytes that are no colours.
-  makePicture(image, isPhotograph) {
+  // What is shown from now on. frame: its pictures by name, and the numbers that go with them.
+  setFrame(frame) {
+    this.frame = frame;
+    for (const [name, picture] of Object.entries(frame.pictures)) {
+      this.fill(name, picture);
+      if (name === "left" || name === "right") {
+        this.gl.generateMipmap(this.gl.TEXTURE_2D);
+      }
+    }
+  }
+
+  // The values as they are in the file, see Film.decode().
+  fill(name, picture) {
     const gl = this.gl;
-    const texture = this.makeTexture(gl.RGBA8, image.naturalWidth, image.naturalHeight,
-                                     isPhotograph ? gl.LINEAR : gl.NEAREST);
+    gl.bindTexture(gl.TEXTURE_2D, this.textures[name]);
     gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
     gl.pixelStorei(gl.UNPACK_PREMULTIPLY_ALPHA_WEBGL, false);
     gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, gl.RGBA, gl.UNSIGNED_BYTE, image);
-    if (isPhotograph) {
-      gl.generateMipmap(gl.TEXTURE_2D);
-    }
-    return texture;
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, gl.RGBA, gl.UNSIGNED_BYTE, picture);
   }
 
   // Disparities that one image shows in the new view.
@@ -136,8 +149,8 @@ class Renderer {
     const gl = this.gl;
     gl.useProgram(program.program);
     const all = {
-      uSmallest: this.scene.disparity.smallest,
-      uStep: this.scene.disparity.step,
+      uSmallest: this.frame.disparity.smallest,
+      uStep: this.frame.disparity.step,
       uSize: [this.scene.width, this.scene.height],
       uGradientLimit: this.scene.gradientLimit,
       ...values,
@@ -156,6 +169,7 @@ class Renderer {
         case gl.FLOAT_VEC2: gl.uniform2fv(location, value); break;
         case gl.FLOAT_VEC3: gl.uniform3fv(location, value); break;
         case gl.FLOAT_MAT3: gl.uniformMatrix3fv(location, false, value); break;
+        case gl.FLOAT_MAT4: gl.uniformMatrix4fv(location, false, value); break;
         case gl.INT_VEC2: gl.uniform2iv(location, value); break;
         default: gl.uniform1i(location, value);  // int and bool
       }
@@ -237,7 +251,7 @@ class Renderer {
     const [left, right] = shifts.map((shift) => Math.hypot(...shift));
     const alpha = right / (left + right);
     const gamma = this.scene.gamma ?? alpha;
-    const {offset, gain} = this.scene.intensity;  // right = offset + gain * left, per channel
+    const {offset, gain} = this.frame.intensity;  // right = offset + gain * left, per channel
     return {
       uAlpha: alpha,
       uLeftScale: gain.map((b) => gamma + (1 - gamma) * b),
@@ -259,17 +273,30 @@ class Renderer {
   // "disparity", "left" or "right".
   show(what, box) {
     const gl = this.gl;
-    const pictures = {left: this.textures.left, right: this.textures.right};
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(...box);
-    this.use(this.programs.show, {
-      uPicture: pictures[what] ?? this.view.colour,
+    this.use(this.programs.show, this.shown(what));
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  }
+
+  // Draws the view as a screen in space into a box of the current framebuffer; values: those of
+  // headset.vert.
+  showOnScreen(box, values) {
+    const gl = this.gl;
+    gl.viewport(...box);
+    this.use(this.programs.headset, {...this.shown("view"), ...values});
+    gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+  }
+
+  // The values of show.frag.
+  shown(what) {
+    return {
+      uPicture: what === "left" || what === "right" ? this.textures[what] : this.view.colour,
       uDisparity: this.view.disparity,
       uPalette: this.textures.palette,
       uPaletteRange: this.scene.paletteRange,
       uShowsDisparities: what === "disparity",
-    });
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    };
   }
 
   // Draws the left photograph's pixels as points, seen from the place of an Orbit.

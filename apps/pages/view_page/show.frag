@@ -10,6 +10,10 @@ in vec2 vPlace;
 out vec4 oColour;
 
 void main() {
+  if (any(lessThan(vPlace, vec2(0.0))) || any(greaterThan(vPlace, vec2(1.0)))) {
+    oColour = vec4(0.0, 0.0, 0.0, 1.0);  // of a screen in space, which does not move with the view
+    return;
+  }
   vec3 colour = texture(uPicture, vPlace).rgb;
   if (uShowsDisparities) {
     ivec2 pixel = min(ivec2(vPlace * vec2(uSize)), uSize - 1);
