@@ -49,15 +49,13 @@ struct Method {
 };
 
 std::vector<Method> all_methods() {
-  std::vector<Method> methods(4);
+  std::vector<Method> methods(3);
   methods[0] = {.name = "ssd", .match = {}, .frames = 144, .with_video = true};
-  methods[1] = {.name = "preset fast", .match = {}, .frames = 72};
   methods[0].match.method = MatchMethod::kSsd;
-  methods[1].match.preset = MatchPreset::kFast;
-  methods[2] = {.name = "preset balanced", .match = {}, .frames = 60};
-  methods[2].match.preset = MatchPreset::kBalanced;
-  methods[3] = {.name = "bayes", .match = {}, .frames = 36};
-  methods[3].match.method = MatchMethod::kBayes;
+  methods[1] = {.name = "preset balanced", .match = {}, .frames = 60};
+  methods[1].match.preset = MatchPreset::kBalanced;
+  methods[2] = {.name = "bayes", .match = {}, .frames = 36};
+  methods[2].match.method = MatchMethod::kBayes;
   for (Method& method : methods) {
     method.match.disparities = kRange;
   }
@@ -258,7 +256,7 @@ int run_benchmark(int argc, char** argv) {
   line.rounds(settings.rounds);
   line.threads(settings.threads);
   line.number("--in-flight", settings.in_flight, "Frames in flight; threads + 2 by default");
-  line.only(settings.only, "Only this method: ssd, preset fast, preset balanced, bayes");
+  line.only(settings.only, "Only this method: ssd, preset balanced, bayes");
   line.option("--output", settings.output, "Folder of the temporary results");
   line.json(settings.json);
   line.parse(argc, argv);

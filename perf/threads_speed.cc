@@ -155,8 +155,8 @@ std::vector<SpeedMethod> wanted_rows(const Settings& settings) {
   };
   MatchOptions refined;
   add("both maps, ssd", refined);
-  refined.preset = MatchPreset::kFast;
-  add("both maps, preset fast", refined);
+  refined.preset = MatchPreset::kBalanced;
+  add("both maps, preset balanced", refined);
   refined.preset = MatchPreset::kBalanced;
   add("both maps, preset balanced", refined);
   return rows;

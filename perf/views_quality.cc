@@ -99,7 +99,6 @@ const std::vector<Contender>& contenders() {
        [](const LoadedPair& pair, const DisparityMaps& maps, double view_x, Execution& /*unused*/) {
          return plain_view(pair.left, pair.right, maps, view_x);
        }},
-      {"fast", "fast", ours({})},
       {"balanced", "balanced", ours({})},
       {"balanced, forward", "balanced", ours({.warp = WarpColour::kForward})},
       {"balanced, hard edges", "balanced", ours({.soft_edges = false})},
@@ -172,7 +171,6 @@ void measure(const ViewScene& scene, const std::filesystem::path& folder, Execut
                         read_photograph(folder / scene.right)};
   std::map<std::string, DisparityMaps> maps;
   maps["truth"] = true_maps(scene, folder, execution);
-  maps["fast"] = preset(MatchPreset::kFast)(pair, execution);
   maps["balanced"] = preset(MatchPreset::kBalanced)(pair, execution);
   maps["balanced, median"] = preset(MatchPreset::kBalanced, Fill::kMedian)(pair, execution);
   maps["quality"] = preset(MatchPreset::kQuality)(pair, execution);

@@ -50,7 +50,7 @@ void add_tune_settings(Settings& settings, TuneJob& job) {
       {"size", "images", "for", "budget", "output", "dry-run", "list", "disparities", "preset",
        "threads", "quiet"},
       {"vantage tune --size 1280x720 --disparities 0:127",
-       "vantage tune --size 1280x720 --disparities 0:127 --preset fast --for run --budget 300",
+       "vantage tune --size 1280x720 --disparities 0:127 --preset realtime --for run --budget 300",
        "vantage tune --list"});
 }
 

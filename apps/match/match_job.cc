@@ -138,7 +138,7 @@ void add_match_job_settings(Settings& settings, MatchJob& job) {
       {"left", "right", "more", "output", "output-right", "unmatched", "preview", "calibration",
        "depth", "cloud", "disparities", "preset", "threads", "quiet"},
       {"vantage match left.png right.png -o disparity.pfm --preview preview.png",
-       "vantage match left.png right.png -o disparity.npy --disparities 0:127 --preset fast",
+       "vantage match left.png right.png -o disparity.npy --disparities 0:127 --preset realtime",
        "vantage match left.png right.png -o disparity.png --fill none --unmatched mask.png",
        "vantage match left.png right.png -o map.pfm --calibration calib.txt --cloud cloud.ply"});
 }

@@ -93,7 +93,7 @@ const auto& option_answers() {
       WordAnswer{{"algorithm", "algo", "matcher", "mode", "sgbm", "bm", "realtime", "fast",
                   "balanced", "quality", "best"},
                  "--preset",
-                 "--preset realtime|fast|balanced|quality selects how pairs are matched"},
+                 "--preset realtime|balanced|quality selects how pairs are matched"},
       WordAnswer{{"calib", "camera", "cameras", "intrinsics", "extrinsics"},
                  "--calibration",
                  "--calibration FILE is the path to the cameras"},

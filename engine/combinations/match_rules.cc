@@ -67,8 +67,8 @@ constexpr Rule kMatchRules[] = {
     {kMatch, "edge-snapping > 0", "disparities-y",
      "expected 0 with disparities-y: it moves discontinuities of horizontal disparities only"},
     {kMatch, "cross-check-level > 0", "disparities-y",
-     "expected 0 with disparities-y: winners of coarse levels are kept of searches along rows only",
-     0},
+     "expected 0 with disparities-y: winners of coarse levels are kept of searches along rows "
+     "only"},
     {kMatch, "cross-check = on", "selection = symmetric",
      "expected none with selection symmetric: both maps are of one solution", 0},
     {kMatch, "candidate-step < 1", "selection = symmetric",
@@ -82,12 +82,11 @@ constexpr Rule kMatchRules[] = {
      "expected 0 with a reduced search-size: both maps have half the size"},
     {kMatch, "cross-check-level > 0", kObstaclesOfCheckedLevels,
      "expected 0: only aggregation bayes with levels above 1 and selection winner has maps of "
-     "coarse levels",
-     0},
+     "coarse levels"},
     // Refinement that nothing reads; see also raw_rules().
     {kMatch, "user cross-check PX", "cross-check = none",
      "a number of pixels for cross-check is set but has no effect with cross-check none"},
-    {kMatch, "user cross-check-level > 0", "cross-check = none",
+    {kMatch, "cross-check-level > 0", "cross-check = none",
      "{option} is set but has no effect with cross-check none"},
     {kMatch, "user uniform-contrast != 1",
      "fill = constant | fill = linear | fill = median | fill = none",

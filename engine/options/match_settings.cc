@@ -26,13 +26,20 @@ void add_method_settings(Settings& settings, MatchOptions& options) {
       "method", options.method, names_of(MatchMethod{}),
       "A method of Scharstein's book, for comparison; for photographs use --preset; auto: the "
       "preset's, without a preset ssd");
-  settings.choice(
+  Setting& preset = settings.choice(
       "preset", options.preset, names_of(MatchPreset{}),
       "Parameters for photographs, shown by --print-config:\nrealtime  0.35 times the time of "
-      "balanced, 8.2 % bad pixels\nfast      0.7 times the time of balanced, 8.3 % bad "
-      "pixels\nbalanced  the default, 7.5 % bad pixels (mean of 18 "
+      "balanced, 8.2 % bad pixels\nbalanced  the default, 7.5 % bad pixels (mean of 18 "
       "scenes)\nquality   1.8 times the time of balanced, 7.5 % bad pixels\nauto: balanced; with "
       "--method, --aggregate, --disparities-y: none");
+  preset.set = [set = std::move(preset.set)](const SettingValue& value) {
+    if (is_word(value, "fast")) {
+      throw UsageError(
+          "is fast, which is no longer there: realtime takes half its time and errs as little, "
+          "balanced errs less");
+    }
+    set(value);
+  };
 }
 
 void add_part_settings(Settings& settings, MatchOptions& options) {

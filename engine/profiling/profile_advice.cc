@@ -12,7 +12,6 @@ namespace vantage {
 namespace {
 
 /// Time of `realtime` relative to that of the preset (docs/QUALITY.md).
-constexpr double kRealtimeOfFast = 0.5;
 constexpr double kRealtimeOfBalanced = 0.3;
 constexpr double kRealtimeOfQuality = 0.2;
 
@@ -20,8 +19,6 @@ double realtime_of(MatchPreset preset) {
   switch (preset) {
     case MatchPreset::kRealtime:
       return 1;
-    case MatchPreset::kFast:
-      return kRealtimeOfFast;
     case MatchPreset::kBalanced:
       return kRealtimeOfBalanced;
     case MatchPreset::kQuality:
@@ -69,7 +66,7 @@ class Steps {
 };
 
 Advice about_preset(const Steps& steps, double maps_s, const ProfiledChoices& choices) {
-  // `realtime` searches few candidates at full size, and is slower than `fast` then.
+  // `realtime` searches few candidates at full size, and saves nothing then.
   const bool is_few = choices.candidates > 0 && choices.candidates <= kMaxFullSizeCandidates;
   if (choices.preset && (choices.preset == MatchPreset::kRealtime || is_few)) {
     return {0, ""};
@@ -77,7 +74,7 @@ Advice about_preset(const Steps& steps, double maps_s, const ProfiledChoices& ch
   if (!choices.preset) {
     return {steps.share(maps_s) * (1 - kRealtimeOfBalanced),
             fmt::format("--preset {} instead of a method of Scharstein's book: maps take {}.",
-                        is_few ? "fast" : "realtime", steps.text(maps_s))};
+                        is_few ? "balanced" : "realtime", steps.text(maps_s))};
   }
   const double of_this = realtime_of(*choices.preset);
   return {steps.share(maps_s) * (1 - of_this),

@@ -20,7 +20,7 @@ def copies(thing):
 
 
 def test_matchers(pair):
-    matcher = vantage.Matcher("fast", (0, 15), fill="none", threads=2)
+    matcher = vantage.Matcher("balanced", (0, 15), fill="none", threads=2)
     expected = matcher(*pair).disparity
     for one in copies(matcher):
         assert one.options == matcher.options and one.threads == 2 and repr(one) == repr(matcher)
@@ -31,7 +31,7 @@ def test_matchers_of_photographs_that_are_not_rectified():
     left, right = unrectified_pair()
     cameras = vantage.Calibration(np.diag([160.0, 160, 1]) + [[0, 0, 80], [0, 0, 60], [0, 0, 0]],
                                   T=[-0.1, 0.002, 0])
-    matcher = vantage.Matcher("fast", (0, 31), unrectified=cameras, rectified_pixels=True)
+    matcher = vantage.Matcher("balanced", (0, 31), unrectified=cameras, rectified_pixels=True)
     expected = matcher(left, right).disparity
     for one in copies(matcher):
         assert same(one(left, right).disparity, expected)
@@ -39,7 +39,7 @@ def test_matchers_of_photographs_that_are_not_rectified():
 
 @pytest.mark.filterwarnings("error")
 def test_stereo_vantage(pair):
-    stereo = vantage.opencv.StereoVantage_create(-2, 16, speckleWindowSize=200, preset="fast")
+    stereo = vantage.opencv.StereoVantage_create(-2, 16, speckleWindowSize=200, preset="balanced")
     with pytest.warns(UserWarning, match="without effect: P1"):
         stereo.setP1(7)
     expected = stereo.compute(*pair)

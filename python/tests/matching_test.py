@@ -133,7 +133,7 @@ def test_options_are_checked():
     with pytest.raises(ValueError, match="unknown option 'report'"):
         vantage.Matcher(report="file.json")
     assert vantage.Matcher(fill="none").options["fill"] == "none"
-    for options in [{}, {"preset": "fast"}, {"method": "ssd"}, {"aggregate": "none"},
+    for options in [{}, {"preset": "balanced"}, {"method": "ssd"}, {"aggregate": "none"},
                     {"disparities_y": (0, 1), "disparities": (0, 3)}]:
         options = vantage.Matcher(**options).options
         assert vantage.Matcher(**options).options == options
@@ -186,6 +186,6 @@ def test_pixels_that_show_no_scene_are_unknown(pair):
 
 
 def test_a_region_and_a_scale(pair):
-    known = ~np.isnan(vantage.Matcher("fast", (0, 15), roi=(4, 6, 20, 11)).compute(*pair).disparity)
+    known = ~np.isnan(vantage.Matcher("balanced", (0, 15), roi=(4, 6, 20, 11)).compute(*pair).disparity)
     assert known.sum() == 220 and known[6:17, 4:24].all()
-    assert vantage.Matcher("fast", (0, 15), scale=0.5).compute(*pair).disparity.shape == known.shape
+    assert vantage.Matcher("balanced", (0, 15), scale=0.5).compute(*pair).disparity.shape == known.shape

@@ -71,7 +71,7 @@ def test_cameras_one_above_the_other(pair, tmp_path):
 
 
 @pytest.mark.parametrize("options, wanted", [
-    ({"preset": "fast"}, {}),
+    ({"preset": "balanced"}, {}),
     ({"preset": "balanced"}, {"level": 1, "rows": (3, 20)}),
     ({"method": "ssd"}, {"kind": "costs"}),
     ({"method": "bayes", "reference": "right"}, {"rows": (100, 100)}),

@@ -48,7 +48,7 @@ def test_maps_of_photographs(scene, pair, rig, tmp_path, on_rectified):
 
 
 def test_points_of_rectified_pixels(scene, pair, rig, tmp_path):
-    result = vantage.Matcher("fast", (0, 15), unrectified=rig,
+    result = vantage.Matcher("balanced", (0, 15), unrectified=rig,
                              rectified_pixels=True).compute(*pair)
     rectified = vantage.rectify(*pair, rig)
     assert same(result.depth(calibration_unit="m"),
@@ -69,7 +69,7 @@ def test_refusals_of_photographs(pair, rig):
             vantage.Matcher(unrectified=rig, **options)
     with pytest.raises(vantage.UsageError, match="rectified-pixels has no effect"):
         vantage.Matcher(rectified_pixels=True)
-    matcher = vantage.Matcher("fast", (0, 15), unrectified=rig)
+    matcher = vantage.Matcher("balanced", (0, 15), unrectified=rig)
     with pytest.raises(vantage.UsageError, match="a calibration is of two cameras"):
         matcher.compute(*pair, more=[pair[1]], baselines=[1, 2])
     with pytest.raises(vantage.UsageError, match="posterior cannot be used"):
@@ -82,11 +82,11 @@ def test_refusals_of_photographs(pair, rig):
 
 def test_sequences_of_photographs(scene, rig, tmp_path):
     left, right = files(scene)
-    options = {"preset": "fast", "disparities": (0, 15), "save": ["disparity", "right-disparity"]}
+    options = {"preset": "balanced", "disparities": (0, 15), "save": ["disparity", "right-disparity"]}
     for on_rectified in [False, True]:
         out = tmp_path / str(on_rectified)
         run_program("run", "--left", left, "--right", right, "--unrectified", rig, "-o", out,
-                    "--preset", "fast", "--disparities", "0:15", "--save",
+                    "--preset", "balanced", "--disparities", "0:15", "--save",
                     "disparity,right-disparity", "--format", "npy",
                     *["--rectified-pixels"] * on_rectified)
         frame, = vantage.Sequence(left, right, unrectified=rig, rectified_pixels=on_rectified,
@@ -118,8 +118,8 @@ def test_lists_with_cameras_and_ranges(scene, rig, tmp_path):
         f"{left},{right},plain,{scene / 'calib.txt'},2,12\n")
     run_program("run", "--pairs", tmp_path / "list.csv", "-o", tmp_path / "out", "--save",
                 "disparity,depth,preview", "--format", "npy", "--depth-format", "npy",
-                "--calibration-unit", "m", "--preset", "fast")
-    sequence = vantage.Sequence(pairs=tmp_path / "list.csv", preset="fast", calibration_unit="m")
+                "--calibration-unit", "m", "--preset", "balanced")
+    sequence = vantage.Sequence(pairs=tmp_path / "list.csv", preset="balanced", calibration_unit="m")
     for frame, name, disparities in zip(sequence, ["turned", "plain"], [(0, 9), (2, 12)],
                                         strict=True):
         result = frame.result
@@ -129,6 +129,6 @@ def test_lists_with_cameras_and_ranges(scene, rig, tmp_path):
         assert same(result.preview(), vantage.read_image(tmp_path / f"out/preview/{name}.png"))
     # Without a unit the depths of the second alone are known.
     with pytest.raises(vantage.UsageError, match="needs --calibration|needs"):
-        next(iter(vantage.Sequence(pairs=tmp_path / "list.csv", preset="fast"))).result.depth()
+        next(iter(vantage.Sequence(pairs=tmp_path / "list.csv", preset="balanced"))).result.depth()
     with pytest.raises(vantage.UsageError, match="a view is defined by one pair of cameras"):
         vantage.Sequence(pairs=tmp_path / "list.csv", view=0.5)

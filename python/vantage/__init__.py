@@ -51,7 +51,7 @@ if _TYPE_CHECKING:  # at run time they would be names of this module
     _Rig = Calibration | _Path | None
     _Map = NDArray[np.float32] | NDArray[np.float64]
     _Mask = NDArray[np.bool_] | NDArray[np.uint8]
-    _Preset = Literal["realtime", "fast", "balanced", "quality"] | None
+    _Preset = Literal["realtime", "balanced", "quality"] | None
     _Numbers = NDArray[Any] | _Sequence[Any]
     _Position = float | tuple[float, float] | Mapping[str, Any]
 
@@ -61,7 +61,7 @@ _loops = _weakref.WeakSet()
 class Matcher:
     """Matches rectified pairs, as `vantage match` does.
 
-    preset: "realtime", "fast", "balanced" or "quality"; None: "balanced", unless options choose a
+    preset: "realtime", "balanced" or "quality"; None: "balanced", unless options choose a
     method (method, aggregate, disparities_y).
     disparities: (MIN, MAX) or "MIN:MAX" in pixels, ends included; "auto": estimated for each pair.
     options: those of `vantage match` that concern matching, reference and threads.

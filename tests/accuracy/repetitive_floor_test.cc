@@ -87,7 +87,7 @@ TEST(RepetitiveFloor, IsFoundByThePresets) {
   const Irregularity irregularity(random);
   const Photograph left = photographed(0, irregularity, random);
   const Photograph right = photographed(1, irregularity, random);
-  for (const MatchPreset preset : {MatchPreset::kFast, MatchPreset::kBalanced}) {
+  for (const MatchPreset preset : {MatchPreset::kBalanced, MatchPreset::kQuality}) {
     MatchOptions options;
     options.preset = preset;
     options.disparities = {0, 47};

@@ -350,7 +350,7 @@ TEST_F(SceneBuilderTest, TellsWhetherRowsAndColumnsCorrespond) {
       write_photograph(images.back().file, seen_from(at));
     }
     SceneBuildOptions build;
-    build.match.preset = MatchPreset::kFast;  // maps are not looked at
+    build.match.preset = MatchPreset::kRealtime;  // maps are not looked at
     build.match.disparities = {-20, 20};
     fs::remove_all(place_);
     SceneBuilder checking(place_, images, build, execution());

@@ -71,8 +71,8 @@ class Shots : public ::testing::Test {
  protected:
   Shots() {
     options_.match.disparities = {0, 19};
-    options_.match.preset = MatchPreset::kFast;  // whatever the brightness
-    options_.intensity_fit = FitScope::kShot;    // shots are matched
+    options_.match.preset = MatchPreset::kRealtime;  // whatever the brightness
+    options_.intensity_fit = FitScope::kShot;        // shots are matched
   }
 
   std::optional<ShotTable> survey(int first = 0, int end = kFrames, int threads = 3) {

@@ -276,7 +276,7 @@ TEST_F(SceneCommand, RefusesHandHeldCamerasUnlessForced) {
 TEST_F(SceneCommand, RefusesImagesOfWhichLittleMatches) {
   const ProcessResult refused =
       run_vantage({"scene", "build", "--images", images_ + "/[01].png", "-o", place_,
-                   "--disparities=40:60", "--preset", "fast"});
+                   "--disparities=40:60", "--preset", "balanced"});
   expect_one_line(refused, 1, "scene build");
   EXPECT_THAT(refused.err, AllOf(HasSubstr("1.png: "),
                                  HasSubstr("% of the pixels match, expected at least 30 %"),

@@ -100,7 +100,7 @@ TEST_F(EstimatedScene, PosesLeadToViewsAndClouds) {
   EXPECT_LE(results.at("median_px"), results.at("median_px_before_adjustment"));
 
   succeeds(run_vantage({"scene", "build", "--poses", model_, "--images", images_, "-o", place_,
-                        "--preset", "fast", "--disparities=0:20"}));
+                        "--preset", "balanced", "--disparities=0:20"}));
   const Eigen::Vector3d middle(0.5, 0.5, 0.05);
   const PosedCamera wanted = camera(middle, turn(0.2, 0.3, 1));
   const Eigen::Matrix3d r = wanted.rotation * first_turn.transpose();

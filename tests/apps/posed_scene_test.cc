@@ -31,7 +31,7 @@ class PosedScene : public PosedCameras {
 
   [[nodiscard]] ProcessResult build(const Words& more = {}) const {
     return run_vantage(joined({"scene", "build", "-o", place_, "--images", images_, "--preset",
-                               "fast", "--disparities=0:14"},
+                               "balanced", "--disparities=0:14"},
                               more));
   }
   [[nodiscard]] ProcessResult view(const Words& more) const {

@@ -38,7 +38,7 @@ class RunCamerasTest : public RunTest {
 };
 
 TEST_F(RunCamerasTest, FramesAreWhatMatchMakesOfThem) {
-  for (const std::string preset : {"realtime", "fast", "balanced", "quality"}) {
+  for (const std::string preset : {"realtime", "balanced", "quality"}) {
     const std::string out = folder_ / preset;
     succeeds(run_three(out, {"--preset", preset, "--save", "disparity,confidence,unmatched"}));
     for (const int frame : {0, 3}) {

@@ -27,13 +27,14 @@ class RunPairList : public RunTest {
   void write_list(const std::string& lines) const { write_file(list_, lines); }
   [[nodiscard]] ProcessResult run_list(const std::string& out, const Words& more) const {
     return run_vantage(
-        joined({"run", "--pairs", list_, "-o", out, "--preset", "fast", "--quiet"}, more));
+        joined({"run", "--pairs", list_, "-o", out, "--preset", "balanced", "--quiet"}, more));
   }
   /// `match` of frame 2 or another.
   void match_frame(int frame, const Words& more) const {
-    succeeds(run_vantage(joined({"match", left_ + "/" + frame_file(frame),
-                                 right_ + "/" + frame_file(frame), "--preset", "fast", "--quiet"},
-                                more)));
+    succeeds(
+        run_vantage(joined({"match", left_ + "/" + frame_file(frame),
+                            right_ + "/" + frame_file(frame), "--preset", "balanced", "--quiet"},
+                           more)));
   }
 
   std::string list_ = folder_ / "list.csv";

@@ -114,9 +114,9 @@ class Asp(unittest.TestCase):
         values = [d for row in found for d in row if not math.isnan(d)]
         self.assertLess(min(values), -5)
         self.assertGreater(max(values), 4)
-        given = self.map_of(self.whole, "--disp-min", "-12", "--disp-max", "9", "--preset", "fast")
+        given = self.map_of(self.whole, "--disp-min", "-12", "--disp-max", "9", "--preset", "balanced")
         self.assertGreater(self.shares(given, lambda x, y: True)[1], 0.97)
-        left = self.map_of(self.whole, "--disp-min=-9", "--disp-max=12", "--preset", "fast",
+        left = self.map_of(self.whole, "--disp-min=-9", "--disp-max=12", "--preset", "balanced",
                            "--sign", "left-minus-right")
         for row, other in zip(given, left):
             for d, e in zip(row, other):

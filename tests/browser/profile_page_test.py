@@ -95,7 +95,7 @@ MADE_UP = {
         {"thread": "main", "is_in_pool": True, "spans": [
             {"name": "match left", "is_wait": False, "begin_s": 0.0, "end_s": 0.2, "frame": 21},
             {"name": "idle", "is_wait": True, "begin_s": 0.2, "end_s": 0.32, "frame": -1}]}],
-    "advice": ["--preset fast, for instance."], "findings": ["The stage takes 72 % of the work."]}
+    "advice": ["--preset realtime, for instance."], "findings": ["The stage takes 72 % of the work."]}
 
 
 def empty_profile():
@@ -223,7 +223,7 @@ class ProfilePageTest(unittest.TestCase):
                          ["memory 9.75 GB/s", "L2 136 GB/s", "arithmetic 118 GFLOP/s",
                           "Bayes iteration"])
         for title, kind, text in [
-                ("What you can do about the time", "texts", "--preset fast, for instance."),
+                ("What you can do about the time", "texts", "--preset realtime, for instance."),
                 ("What holds it back", "texts", "The stage takes 72 % of the work."),
                 ("Roofline", "texts", "Not drawn, as they do not count their work: cost."),
                 ("Roofline", "hints", "Bayes iteration: 402 ms of a thread, 4.49 GFLOP/s, "

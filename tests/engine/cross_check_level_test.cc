@@ -193,12 +193,9 @@ INSTANTIATE_TEST_SUITE_P(Kinds, CrossCheckLevel,
 
 TEST(CrossCheckLevelOption, IsForLevelsOfBayesianDiffusion) {
   MatchOptions options;
-  options.preset = MatchPreset::kFast;
-  EXPECT_EQ(options.resolved_refinement().cross_check_level, 1);
-  options.parameters.levels = 1;
-  EXPECT_EQ(options.resolved_refinement().cross_check_level, 0);
-  options.validate();
   options.refinement.cross_check_level = 2;
+  options.validate();
+  options.parameters.levels = 1;
   EXPECT_EQ(error_of([&] { options.validate(); }),
             "cross-check-level is 2, expected 0: only aggregation bayes with levels above 1 and "
             "selection winner has maps of coarse levels");

@@ -358,8 +358,7 @@ MatchOptions method_or_preset(int number) {
   constexpr MatchMethod kMethods[] = {MatchMethod::kSsd,           MatchMethod::kGradient,
                                       MatchMethod::kDiffusion,     MatchMethod::kMembrane,
                                       MatchMethod::kLocalStopping, MatchMethod::kBayes};
-  constexpr MatchPreset kPresets[] = {MatchPreset::kFast, MatchPreset::kBalanced,
-                                      MatchPreset::kQuality};
+  constexpr MatchPreset kPresets[] = {MatchPreset::kBalanced, MatchPreset::kQuality};
   MatchOptions options;
   options.raw = true;
   if (number < 6) {
@@ -369,7 +368,7 @@ MatchOptions method_or_preset(int number) {
   }
   return options;
 }
-constexpr int kMethodsAndPresets = 9;
+constexpr int kMethodsAndPresets = 8;
 
 TEST(DisplacementSearchOfMethods, FindsWholeShiftsEverywhere) {
   struct Shift {

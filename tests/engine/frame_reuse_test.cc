@@ -272,8 +272,7 @@ TEST_P(FrameReuseTest, TheLeftMapAloneStaysToo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Presets, FrameReuseTest,
-                         ::testing::Values(MatchPreset::kRealtime, MatchPreset::kFast,
-                                           MatchPreset::kBalanced));
+                         ::testing::Values(MatchPreset::kRealtime, MatchPreset::kBalanced));
 
 TEST(FrameReuse, RefusesMethodsWithoutCoarseLevels) {
   const Pair pair = pair_with_square(120);

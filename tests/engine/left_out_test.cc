@@ -83,14 +83,14 @@ std::vector<Case> all_searches() {
   };
   add("windows", [](MatchOptions& o) { o.method = MatchMethod::kSsd; });
   add("coarse to fine", [](MatchOptions& o) { o.preset = MatchPreset::kBalanced; });
-  add("checked levels", [](MatchOptions& o) { o.preset = MatchPreset::kFast; });
+  add("checked levels", [](MatchOptions& o) { o.refinement.cross_check_level = 1; });
   add("reduced", [](MatchOptions& o) { o.preset = MatchPreset::kRealtime; });
   add("symmetric", [](MatchOptions& o) {
     o.method = MatchMethod::kBayes;
     o.parameters.selection = Selection::kSymmetric;
   });
   add("half the size", [](MatchOptions& o) {
-    o.preset = MatchPreset::kFast;
+    o.preset = MatchPreset::kBalanced;
     o.scale = 0.5;
   });
   return cases;

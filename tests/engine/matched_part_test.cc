@@ -126,7 +126,7 @@ TEST(Scale, MapsHaveTheDisparitiesOfTheGivenImages) {
   const Photograph left = seen_from(0);
   const Photograph right = seen_from(1);
   MatchOptions options;
-  options.preset = MatchPreset::kFast;
+  options.preset = MatchPreset::kBalanced;
   options.disparities = {0, 30};
   options.scale = 0.5;
   DisparityMaps maps;

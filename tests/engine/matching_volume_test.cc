@@ -84,12 +84,9 @@ std::vector<MethodCase> cases_of_volumes() {
   std::vector<MethodCase> cases = method_cases(kRange);
   MatchOptions options = cases.front().options;
   options.method.reset();
-  for (const auto& [preset, name] : {std::pair{MatchPreset::kFast, "fast"},
-                                     {MatchPreset::kBalanced, "balanced"},
-                                     {MatchPreset::kQuality, "quality"}}) {
+  for (const auto& [preset, name] :
+       {std::pair{MatchPreset::kBalanced, "balanced"}, {MatchPreset::kQuality, "quality"}}) {
     options.preset = preset;
-    options.parameters.search_size =
-        preset == MatchPreset::kFast ? std::optional(SearchSize::kFull) : std::nullopt;
     cases.push_back({name, options});
   }
   options.preset = MatchPreset::kBalanced;

@@ -46,10 +46,9 @@ std::vector<MethodCase> all_methods() {
     options.method = method;
     options.disparities_y = {-2, 1};
   }
-  for (const auto& [name, preset] :
-       {std::pair{"realtime", MatchPreset::kRealtime}, std::pair{"fast", MatchPreset::kFast},
-        std::pair{"balanced", MatchPreset::kBalanced},
-        std::pair{"quality", MatchPreset::kQuality}}) {
+  for (const auto& [name, preset] : {std::pair{"realtime", MatchPreset::kRealtime},
+                                     std::pair{"balanced", MatchPreset::kBalanced},
+                                     std::pair{"quality", MatchPreset::kQuality}}) {
     add(name, {.candidate_step_px = 0.5}).preset = preset;
   }
   return all;

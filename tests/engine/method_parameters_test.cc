@@ -127,8 +127,8 @@ TEST(MethodParameters, WithoutAnyChoiceTheyAreThoseOfBalanced) {
 }
 
 TEST(MethodParameters, PresetsAreValidAndNotCombinedWithMethods) {
-  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
-                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
+  for (const MatchPreset preset :
+       {MatchPreset::kRealtime, MatchPreset::kBalanced, MatchPreset::kQuality}) {
     MatchOptions options;
     options.preset = preset;
     EXPECT_EQ(complaint(options), "");

@@ -131,7 +131,7 @@ TEST(PairMatcherTest, WithoutARequestTheMapIsThatOfTheReference) {
   const std::vector<std::uint8_t> right = colours<std::uint8_t>(4, 1, 255);
   const Photograph left_image = photograph_of(buffer_of(left, 1));
   const Photograph right_image = photograph_of(buffer_of(right, 1));
-  MatchOptions options = options_of(MatchPreset::kFast);
+  MatchOptions options = options_of(MatchPreset::kRealtime);
   DisparityMaps both;
   PairMatcher(options).match(left_image, right_image, {}, both);
   MatchedMap map;

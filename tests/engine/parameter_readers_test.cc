@@ -382,9 +382,8 @@ TEST(Refinement, WhatNothingReadsIsRefused) {
   options.refinement.cross_check_level.reset();
   options.refinement.cross_check_px = 3;
   EXPECT_THAT(complaint(options), HasSubstr("has no effect with cross-check none"));
-  // A preset's level is no mistake.
   options.refinement.cross_check_px.reset();
-  options.preset = MatchPreset::kFast;
+  options.preset = MatchPreset::kBalanced;
   EXPECT_EQ(complaint(options), "");
   options.refinement.surface_fit_px = 0;
   EXPECT_EQ(complaint(options), "");

@@ -52,7 +52,7 @@ TEST(ProfileAdvice, OnlyWhatTheCommandCouldDoIsSaid) {
               ElementsAre(HasSubstr("--preset realtime instead of a method of Scharstein's book")));
   // realtime searches 16 candidates at full size.
   EXPECT_THAT(profile_advice(profile, kSteps, {.preset = {}, .candidates = 16}),
-              ElementsAre(HasSubstr("--preset fast instead of a method of Scharstein's book")));
+              ElementsAre(HasSubstr("--preset balanced instead of a method of Scharstein's book")));
   EXPECT_THAT(profile_advice(profile, kSteps, {.preset = MatchPreset::kBalanced, .candidates = 16}),
               IsEmpty());
   // What takes less than a twentieth is not worth a word.

@@ -63,9 +63,9 @@ TEST(ProfileJson, HoldsFiguresOfStages) {
 
 TEST(ProfileJson, HoldsWhatIsSaidOfTheFigures) {
   Profile profile = made_up_run();
-  profile.advice = {"--preset fast"};
+  profile.advice = {"--preset realtime"};
   const json document = json_of(profile);
-  EXPECT_EQ(document.at("advice"), json::array({"--preset fast"}));
+  EXPECT_EQ(document.at("advice"), json::array({"--preset realtime"}));
   EXPECT_GE(document.at("findings").size(), 3U);
 }
 

@@ -186,8 +186,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, ScanlineSelection,
 TEST(ScanlineSelectionOptions, AreCheckedTogether) {
   MatchOptions options;
   options.parameters.selection = Selection::kScanline;
-  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
-                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
+  for (const MatchPreset preset :
+       {MatchPreset::kRealtime, MatchPreset::kBalanced, MatchPreset::kQuality}) {
     options.preset = preset;
     EXPECT_EQ(complaint(options), "");
     EXPECT_EQ(options.resolved().candidate_blocks, 0);

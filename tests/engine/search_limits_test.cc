@@ -96,8 +96,8 @@ TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
 TEST(SearchLimits, PresetsKeepThem) {
   const SlantedPair pair = slanted_pair();
   DisparityMaps maps;
-  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
-                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
+  for (const MatchPreset preset :
+       {MatchPreset::kRealtime, MatchPreset::kBalanced, MatchPreset::kQuality}) {
     MatchOptions options;
     options.preset = preset;
     options.disparities = kSearch;

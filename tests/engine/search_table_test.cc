@@ -22,7 +22,7 @@ TEST(SearchTable, ImagesAndOptionsChooseTheSearch) {
   };
   const MatchSize pair{.image = {640, 480}};
   EXPECT_EQ(name_of_search(flat.in_force(), pair), "flat");
-  EXPECT_EQ(name_of_search(options_of(MatchPreset::kFast), pair), "coarse to fine");
+  EXPECT_EQ(name_of_search(options_of(MatchPreset::kBalanced), pair), "coarse to fine");
   const ResolvedMatchOptions realtime = options_of(MatchPreset::kRealtime);
   EXPECT_EQ(name_of_search(realtime, pair), "windows in reduced images");
   // Which is of two images of some size with common rows.

@@ -85,7 +85,7 @@ MatchOptions options_of(MatchPreset preset) {
 
 // Left of the square 8 columns of the background are hidden from a camera at 1, 4 from one at ½.
 TEST(SeveralImages, PixelsThatNoImageShowsAreUnmatched) {
-  for (const MatchPreset preset : {MatchPreset::kFast, MatchPreset::kBalanced}) {
+  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kBalanced}) {
     const MatchedMap map = map_of(options_of(preset), {1, 0.5});
     EXPECT_GT(unmatched_share(map, kFirst - 4, kFirst), 0.7);
     EXPECT_LT(unmatched_share(map, kFirst - 8, kFirst - 4), 0.4);
@@ -95,7 +95,7 @@ TEST(SeveralImages, PixelsThatNoImageShowsAreUnmatched) {
 }
 
 TEST(SeveralImages, PixelsThatOneSideShowsAreMatched) {
-  for (const MatchPreset preset : {MatchPreset::kFast, MatchPreset::kBalanced}) {
+  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kBalanced}) {
     const MatchedMap map = map_of(options_of(preset), {1, -1});
     EXPECT_LT(unmatched_share(map, kFirst - 8, kFirst), 0.15);
     EXPECT_LT(unmatched_share(map, kEnd, kEnd + 8), 0.15);

@@ -185,8 +185,8 @@ TEST(SymmetricSelectionMaps, AreFilledWhereUnmatched) {
 TEST(SymmetricSelectionOptions, AreCheckedTogether) {
   MatchOptions options;
   options.parameters.selection = Selection::kSymmetric;
-  for (const MatchPreset preset : {MatchPreset::kRealtime, MatchPreset::kFast,
-                                   MatchPreset::kBalanced, MatchPreset::kQuality}) {
+  for (const MatchPreset preset :
+       {MatchPreset::kRealtime, MatchPreset::kBalanced, MatchPreset::kQuality}) {
     options.preset = preset;
     EXPECT_EQ(complaint(options), "");
     EXPECT_FALSE(options.resolved_refinement().cross_check);

@@ -63,14 +63,6 @@ PresetSettings preset_settings(MatchPreset preset, NoiseKind kind) {
       settings.refinement.surface_fit_px = 14;
       settings.refinement.fill = Fill::kMedian;
       break;
-    case MatchPreset::kFast:
-      settings.parameters.mu = 0.28;
-      settings.parameters.iterations = 2;
-      settings.parameters.window_levels = 0;
-      settings.parameters.final_iterations = 0;
-      settings.refinement.cross_check_level = 1;
-      settings.refinement.surface_fit_step_px = 2;
-      break;
     case MatchPreset::kBalanced:
       settings.parameters.census_thresholds = 3;
       settings.parameters.mu = 0.28;

@@ -33,7 +33,6 @@ const EnumNames<MatchMethod>& names_of(MatchMethod /*type*/) {
 
 const EnumNames<MatchPreset>& names_of(MatchPreset /*type*/) {
   static const EnumNames<MatchPreset> names = {{"realtime", MatchPreset::kRealtime},
-                                               {"fast", MatchPreset::kFast},
                                                {"balanced", MatchPreset::kBalanced},
                                                {"quality", MatchPreset::kQuality}};
   return names;

@@ -76,7 +76,7 @@ inline constexpr ParameterReaders kEpsilonPrior = {
 /// The default counts as read where only it is possible.
 inline constexpr ParameterReaders kSearchSize = {
     "the aggregation bayes with levels above 1, prior-smoothing maximum and cost census-rays with "
-    "one threshold (the presets realtime and fast)",
+    "one threshold (the preset realtime)",
     [](const MethodParameters& p, std::string_view) {
       return p.search_size == SearchSize::kFull || can_reduce_search(p);
     }};

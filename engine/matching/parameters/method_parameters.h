@@ -10,7 +10,7 @@ namespace vantage {
 /// Named combinations of cost, aggregation and parameters, as the book uses them.
 enum class MatchMethod { kSsd, kGradient, kDiffusion, kMembrane, kLocalStopping, kBayes };
 /// Combinations for real photographs, chosen by measurement (docs/QUALITY.md).
-enum class MatchPreset { kRealtime, kFast, kBalanced, kQuality };
+enum class MatchPreset { kRealtime, kBalanced, kQuality };
 
 /// Initial value of a cell of the disparity space: the dissimilarity of a pixel and its partner.
 enum class MatchCost {
