@@ -10,7 +10,6 @@
 #include "engine/figures/figure_families.h"
 #include "engine/plot/heat_map.h"
 #include "engine/plot/line_plot.h"
-#include "engine/plot/surface_plot.h"
 
 namespace vantage {
 namespace {
@@ -106,15 +105,6 @@ FigureContent make_support(const FigureRun& run) {
 
   FigureContent content;
   const std::string shape_title = fmt::format("Support of the membrane, beta = {}", shown_beta);
-  std::vector<SurfacePlot> surfaces;
-  surfaces.push_back({.title = "inverse Fourier transform of (6.12)",
-                      .x_title = "dx, pixels",
-                      .y_title = "dy, pixels",
-                      .z_title = "weight",
-                      .x_first = -kShownRadius,
-                      .y_first = -kShownRadius,
-                      .values = values_of(shown->limit)});
-  content.pictures.push_back({"surface", draw_surface_plots(shape_title, surfaces, 1)});
   std::vector<HeatMap> maps;
   maps.push_back({.title = "inverse Fourier transform of (6.12)",
                   .x_title = "dx, pixels",

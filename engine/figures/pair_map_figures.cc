@@ -10,12 +10,9 @@
 #include "engine/figures/figure_families.h"
 #include "engine/figures/pair_runs.h"
 #include "engine/plot/picture_sheet.h"
-#include "engine/plot/surface_plot.h"
 
 namespace vantage {
 namespace {
-
-constexpr int kMapMeshes = 50;
 
 /// A run, and what differs from the other runs of its figure.
 struct TitledRun {
@@ -58,19 +55,12 @@ double share_at_levels(const DisparityMap& map, const std::string& pair) {
 
 FigureContent show_maps(const std::string& title, const std::vector<TitledRun>& runs) {
   FigureContent content;
-  std::vector<SurfacePlot> surfaces;
   std::vector<SheetPicture> pictures;
   FigureTable table{"",
                     {"map", "mean_absolute_px", "rms_px", "bad_percent",
                      "within_half_pixel_of_a_true_level_percent"}};
   for (const auto& [name, run] : runs) {
     const BookPair pair = make_book_pair(book_pair_options(run.pair));
-    surfaces.push_back({.title = name,
-                        .x_title = "x, pixels",
-                        .y_title = "y, pixels",
-                        .z_title = "disparity, pixels",
-                        .values = run.map.copy(),
-                        .max_meshes = kMapMeshes});
     pictures.push_back({name, grey_picture(run.map.view(), static_cast<float>(pair.search.min),
                                            static_cast<float>(pair.search.max))});
     table.add(name, fmt::format("{:.4f}", run.scores.average_px),
@@ -79,11 +69,9 @@ FigureContent show_maps(const std::string& title, const std::vector<TitledRun>& 
               fmt::format("{:.2f}", share_at_levels(run.map, run.pair)));
   }
   constexpr int kColumns = 4;
-  constexpr int kSurfaceColumns = 2;
   constexpr double kPictureWidth = 200;
   content.pictures.push_back(
       {"maps", draw_picture_sheet(title, pictures, kColumns, kPictureWidth)});
-  content.pictures.push_back({"surfaces", draw_surface_plots(title, surfaces, kSurfaceColumns)});
   content.tables.push_back(std::move(table));
   return content;
 }

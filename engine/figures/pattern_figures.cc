@@ -12,12 +12,9 @@
 #include "engine/image/eight_bit.h"
 #include "engine/image/intensity_rows.h"
 #include "engine/plot/picture_sheet.h"
-#include "engine/plot/surface_plot.h"
 
 namespace vantage {
 namespace {
-
-constexpr int kPatternMeshes = 50;
 
 DisparityMap without_occluded(const DisparityMap& map, const Mask& occluded) {
   DisparityMap result = map.copy();
@@ -49,17 +46,10 @@ void add_levels(const std::string& name, const BookPair& pair, FigureTable& tabl
 FigureContent make_pattern(const FigureRun& run) {
   FigureContent content;
   FigureTable table{"", {"pair", "disparity_px", "pixels", "occluded_pixels"}};
-  std::vector<SurfacePlot> surfaces;
   std::vector<SheetPicture> pictures;
   for (const std::string& name : run.settings.pairs) {
     const BookPair pair = pair_of(run.settings, name, 0);
     const auto near = static_cast<float>(pair.search.max);
-    surfaces.push_back({.title = name,
-                        .x_title = "x, pixels",
-                        .y_title = "y, pixels",
-                        .z_title = "disparity, pixels",
-                        .values = pair.left_disparity.copy(),
-                        .max_meshes = kPatternMeshes});
     pictures.push_back({name, grey_picture(pair.left_disparity.view(), 0, near)});
     const DisparityMap known = without_occluded(pair.left_disparity, pair.left_occluded);
     pictures.push_back({name + ", occluded points white", grey_picture(known.view(), 0, near)});
@@ -67,8 +57,6 @@ FigureContent make_pattern(const FigureRun& run) {
   }
   constexpr int kColumns = 2;
   constexpr double kPictureWidth = 220;
-  content.pictures.push_back(
-      {"surface", draw_surface_plots("True disparities of the left image", surfaces, kColumns)});
   content.pictures.push_back(
       {"grey", draw_picture_sheet("True disparities of the left image (lighter: nearer)", pictures,
                                   kColumns, kPictureWidth)});

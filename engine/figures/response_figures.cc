@@ -16,7 +16,6 @@
 #include "engine/figures/figure_images.h"
 #include "engine/figures/scene_maps.h"
 #include "engine/plot/heat_map.h"
-#include "engine/plot/surface_plot.h"
 
 namespace vantage {
 namespace {
@@ -197,15 +196,6 @@ FigureContent make_surface(ResponseSurface ResponseSurfaces::*shown, const std::
   const ResponseSurfaces both = surfaces_of(*images, run);
   const ResponseSurface& surface = both.*shown;
   FigureContent content{.images = images->description};
-  std::vector<SurfacePlot> plots;
-  plots.push_back({.title = title,
-                   .x_title = "dx, pixels",
-                   .y_title = "dy, pixels",
-                   .z_title = unit,
-                   .x_first = both.range_x.min,
-                   .y_first = both.range_y.min,
-                   .values = surface.values.copy()});
-  content.pictures.push_back({"surface", draw_surface_plots(title, plots, 1)});
   std::vector<HeatMap> maps;
   maps.push_back({.title = unit,
                   .x_title = "dx = x_left - x_right, pixels",

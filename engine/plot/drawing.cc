@@ -53,15 +53,6 @@ void Drawing::stroke(const std::vector<DrawingPoint>& points, double line_width,
   shapes_ += "\"/>\n";
 }
 
-void Drawing::polygon(const std::vector<DrawingPoint>& corners, Colour fill, Colour outline) {
-  append(shapes_, "<polygon fill=\"{}\" stroke=\"{}\" stroke-width=\"0.4\" points=\"", hex(fill),
-         hex(outline));
-  for (const DrawingPoint& point : corners) {
-    append(shapes_, "{:.1f},{:.1f} ", point.x, point.y);
-  }
-  shapes_ += "\"/>\n";
-}
-
 void Drawing::disc(DrawingPoint centre, double radius, Colour colour) {
   append(shapes_, "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.4g}\" fill=\"{}\"/>\n", centre.x,
          centre.y, radius, hex(colour));

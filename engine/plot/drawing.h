@@ -31,8 +31,6 @@ class Drawing {
  public:
   /// An open line through at least two points.
   void stroke(const std::vector<DrawingPoint>& points, double line_width = 1, Colour colour = kInk);
-  /// A filled polygon with a thin outline, convex.
-  void polygon(const std::vector<DrawingPoint>& corners, Colour fill, Colour outline);
   void disc(DrawingPoint centre, double radius, Colour colour);
   /// One line, with its start, middle or end at `baseline`. What is not ASCII becomes "?".
   void text(DrawingPoint baseline, std::string text, TextAnchor anchor = TextAnchor::kBegin,

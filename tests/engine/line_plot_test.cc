@@ -2,7 +2,6 @@
 
 #include "engine/plot/heat_map.h"
 #include "engine/plot/picture_sheet.h"
-#include "engine/plot/surface_plot.h"
 #include "tests/engine/engine_test.h"
 #include "tests/well_formed_xml.h"
 
@@ -195,37 +194,6 @@ TEST(HeatMap, ConstantAndUnknownValues) {
     maps[0].values.at(0, 0) = value;
     EXPECT_EQ(read_xml(draw_heat_maps("", maps, 1).svg()).error, "");
   }
-}
-
-TEST(SurfacePlot, DrawsAMeshPerCellButWhereAValueIsUnknown) {
-  SurfacePlot plot{
-      .title = "s", .x_title = "x", .y_title = "y", .z_title = "z", .values = Image<float>(5, 4)};
-  plot.values.fill(1);
-  plot.values.at(1, 1) = 9;
-  plot.values.at(4, 3) = std::numeric_limits<float>::quiet_NaN();
-  const auto meshes_of = [&plot] {
-    std::vector<SurfacePlot> plots;
-    plots.push_back(std::move(plot));
-    const Drawing drawing = draw_surface_plots("surfaces", plots, 2);
-    plot = std::move(plots.front());
-    auto meshes = points_of(drawing, "<polygon");
-    for (const auto& mesh : meshes) {
-      for (const DrawingPoint& corner : mesh) {
-        EXPECT_GE(corner.x, 0);
-        EXPECT_LT(corner.x, drawing.width);
-        EXPECT_GE(corner.y, 0);
-        EXPECT_LT(corner.y, drawing.height);
-      }
-    }
-    EXPECT_EQ(read_xml(drawing.svg()).error, "");
-    return meshes;
-  };
-  const auto meshes = meshes_of();
-  ASSERT_EQ(meshes.size(), 4U * 3 - 1);
-  // Above the floor where the value is large: corner 2 of the first cell is (1, 1).
-  EXPECT_LT(meshes[0][2].y, meshes[0][0].y);
-  plot.max_meshes = 2;
-  EXPECT_EQ(meshes_of().size(), 2U * 2 - 1);
 }
 
 TEST(PictureSheet, BreaksTitlesAndKeepsShapes) {
