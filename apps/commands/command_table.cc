@@ -45,9 +45,7 @@ constexpr std::array kCommands = {
     Command{"book figure", "Figures and tables of the book, computed again", command_book_figure,
             kBook},
     Command{"book pair", "Synthetic pairs of the book, with true disparities", command_book_pair,
-            kBook},
-    Command{"book response", "Gradient evidence of a pair for a range of displacements",
-            command_book_response, kBook}};
+            kBook}};
 
 }  // namespace
 

@@ -51,6 +51,5 @@ int command_profile(const Arguments& arguments);
 int command_info(const Arguments& arguments);
 int command_book_figure(const Arguments& arguments);
 int command_book_pair(const Arguments& arguments);
-int command_book_response(const Arguments& arguments);
 
 }  // namespace vantage::apps

@@ -46,7 +46,7 @@ std::vector<std::string> extensions_of(OutputKind kind) {
     case OutputKind::kVideo:
       return {".mp4"};
     case OutputKind::kTable:
-      return {".csv", ".npy"};
+      return {".csv"};
     case OutputKind::kVolume:
       return {".npy"};
     case OutputKind::kDepth:

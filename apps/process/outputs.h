@@ -20,7 +20,7 @@ enum class OutputKind {
   kPhotograph,
   kMask,
   kVideo,
-  kTable,   ///< numbers: .csv or .npy
+  kTable,   ///< numbers: .csv
   kVolume,  ///< .npy
   kDepth,
   kPoints,  ///< .ply

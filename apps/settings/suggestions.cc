@@ -137,7 +137,7 @@ const auto& command_answers() {
       WordAnswer{{"join", "concat"}, "", "'vantage merge' joins the parts of a run"},
       WordAnswer{{"resume", "continue"}, "", "'vantage run --resume' continues a run"},
       WordAnswer{{"experiment"}, "", "it is now 'vantage book figure'"},
-      WordAnswer{{"response"}, "", "it is now 'vantage book response'"},
+      WordAnswer{{"response"}, "", "'vantage book figure 5.4 5.5' computes gradient evidence"},
       WordAnswer{{"generate"},
                  "",
                  "'vantage generate scene' renders artificial scenes; 'generate book' is now "

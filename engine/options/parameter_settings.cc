@@ -232,13 +232,6 @@ void add_shared_method_parameters(Settings& settings, MethodOverrides& parameter
                [](const MethodField& field) { return field.option != "iterations"; });
 }
 
-void add_gradient_settings(Settings& settings, MethodOverrides& parameters) {
-  add_settings(settings, parameters, method_defaults(), [](const MethodField& field) {
-    return field.readers.text == readers::kGradient.text ||
-           field.readers.text == readers::kGradientNorm.text;
-  });
-}
-
 void add_refinement_options(Settings& settings, RefinementOverrides& refinement) {
   add_settings(settings, refinement, refinement_defaults(),
                [](const RefinementField&) { return true; });

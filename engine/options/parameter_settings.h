@@ -10,8 +10,6 @@ void add_method_parameters(Settings& settings, MethodOverrides& parameters);
 /// add_method_parameters() without `iterations`. For commands that compare methods: they have their
 /// own option of that name.
 void add_shared_method_parameters(Settings& settings, MethodOverrides& parameters);
-/// An option for each field that only the cost gradient reads, in the current group.
-void add_gradient_settings(Settings& settings, MethodOverrides& parameters);
 /// An option for each field of RefinementOptions, in the current group.
 void add_refinement_options(Settings& settings, RefinementOverrides& refinement);
 

@@ -204,7 +204,7 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   expect_failure(run_vantage({"scene"}), 2, "'vantage scene build' or 'vantage scene view'");
   // Names of before say what they are now.
   EXPECT_THAT(run_vantage({"experiment", "6.16"}).err, HasSubstr("now 'vantage book figure'"));
-  EXPECT_THAT(run_vantage({"response", "a.png"}).err, HasSubstr("now 'vantage book response'"));
+  EXPECT_THAT(run_vantage({"response", "a.png"}).err, HasSubstr("'vantage book figure 5.4 5.5'"));
   EXPECT_THAT(run_vantage({"generate", "book"}).err, HasSubstr("now 'vantage book pair'"));
   // What is not near is not suggested; what users of other programs mean is answered.
   EXPECT_EQ(run_vantage({"foo"}).err, "vantage: unknown command 'foo'; 'vantage help' lists all\n");

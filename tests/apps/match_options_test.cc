@@ -26,7 +26,7 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
        "cross-check-level is 1, expected 0 with disparities-y"},
       {{"--search-size", "half"},
        "search-size is not full, expected full: a reduced search-size needs"},
-      {{"--preset", "balanced", "--search-size", "half"},
+      {{"--preset", "realtime", "--search-size", "half", "--final-iterations", "0"},
        "final-iterations is 0, expected at least 1 with a reduced search-size"},
       {{"--preset", "realtime", "--cross-check-level", "1"},
        "cross-check-level is 1, expected 0 with a reduced search-size"},

@@ -79,7 +79,6 @@ class OutputChecks : public RunTest {
         {{"eval", left, right, "--views"}, {left, right}},
         {{"reproject", at("map.pfm"), "--depth", at("z.png"), "--calibration", at("calib.txt")},
          {at("map.pfm"), at("calib.txt")}},
-        {{"book", "response", left, right, "-o", at("r.csv")}, {left, right}},
         {{"generate", "scene", "-o", at("made"), "--pose", at("camera.toml")}, {at("camera.toml")}},
         {{"book", "pair", "-o", at("made"), "--config", at("config.toml")}, {at("config.toml")}},
         {{"tune", "--size", "64x48", "-o", at("tuning.json"), "--dry-run", "--config",

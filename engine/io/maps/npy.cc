@@ -186,9 +186,9 @@ StoredMap decode_npy(const FileBytes& file) {
 namespace {
 
 /// Everything before the values; `shape` is a Python tuple without the parentheses.
-std::vector<std::uint8_t> npy_header(std::string_view type, std::string_view shape) {
+std::vector<std::uint8_t> npy_header(std::string_view shape) {
   std::string header =
-      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
+      fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}), }}", shape);
   // The data starts at a multiple of 64 bytes: magic, version and length are ten bytes.
   header.append(63 - (10 + header.size()) % 64, ' ');
   header.push_back('\n');
@@ -201,20 +201,12 @@ std::vector<std::uint8_t> npy_header(std::string_view type, std::string_view sha
   return bytes;
 }
 
-std::string tuple_of(std::span<const int> shape) {
-  std::string sides;
-  for (const int side : shape) {
-    sides += fmt::format("{},", side);
-  }
-  return sides;
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> encode_npy(ImageView<const float> image) {
   const std::string channels = image.channels() == 1 ? "" : fmt::format(", {}", image.channels());
   std::vector<std::uint8_t> bytes =
-      npy_header("<f4", fmt::format("{}, {}{}", image.height(), image.width(), channels));
+      npy_header(fmt::format("{}, {}{}", image.height(), image.width(), channels));
   const std::size_t row_bytes =
       sizeof(float) * static_cast<std::size_t>(image.width()) * image.channels();
   bytes.reserve(bytes.size() + row_bytes * static_cast<std::size_t>(image.height()));
@@ -226,14 +218,11 @@ std::vector<std::uint8_t> encode_npy(ImageView<const float> image) {
 }
 
 std::vector<std::uint8_t> npy_float_header(std::span<const int> shape) {
-  return npy_header("<f4", tuple_of(shape));
-}
-
-std::vector<std::uint8_t> encode_npy(std::span<const double> values, std::span<const int> shape) {
-  std::vector<std::uint8_t> bytes = npy_header("<f8", tuple_of(shape));
-  const auto* begin = reinterpret_cast<const std::uint8_t*>(values.data());
-  bytes.insert(bytes.end(), begin, begin + values.size_bytes());
-  return bytes;
+  std::string sides;
+  for (const int side : shape) {
+    sides += fmt::format("{},", side);
+  }
+  return npy_header(sides);
 }
 
 }  // namespace vantage

@@ -27,7 +27,4 @@ std::vector<std::uint8_t> encode_npy(ImageView<const float> image);
 /// What precedes the <f4 values of a file of this shape, format version 1.0.
 std::vector<std::uint8_t> npy_float_header(std::span<const int> shape);
 
-/// Encodes numbers as <f8 in C order; the product of `shape` is their count.
-std::vector<std::uint8_t> encode_npy(std::span<const double> values, std::span<const int> shape);
-
 }  // namespace vantage

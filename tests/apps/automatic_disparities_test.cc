@@ -1,95 +1,12 @@
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <variant>
 
 #include "engine/generation/layered_scene.h"
 #include "engine/image/transposed.h"
 #include "tests/apps/sampling.h"
 
-namespace vantage::command_book_response_test {
-
-class ResponseCommand : public PairTest {
- protected:
-  [[nodiscard]] ProcessResult response(const std::string& out, const Words& more = {}) const {
-    return run_vantage(joined({"book", "response", left_, right_, "-o", out}, more));
-  }
-};
-
-TEST_F(ResponseCommand, PrintsTheDominantDisplacements) {
-  const ProcessResult result = succeeds(response(folder_ / "r.csv"));
-  // The background of the random-dot square is at 2.
-  EXPECT_THAT(result.out, HasSubstr("whole              2     0"));
-  EXPECT_THAT(result.out, HasSubstr("bottom-right "));
-  std::istringstream rows(read_file(folder_ / "r.csv"));
-  std::string line;
-  ASSERT_TRUE(std::getline(rows, line));
-  EXPECT_EQ(line, "dx_px,dy_px,whole,top-left,top-right,bottom-left,bottom-right");
-  int count = 0;
-  double largest = -1e300;
-  int at = 0;
-  while (std::getline(rows, line)) {
-    int dx = 0;
-    int dy = 0;
-    double whole = 0;
-    double quadrant[4] = {};
-    ASSERT_EQ(std::sscanf(line.c_str(), "%d,%d,%lf,%lf,%lf,%lf,%lf", &dx, &dy, &whole, quadrant,
-                          quadrant + 1, quadrant + 2, quadrant + 3),
-              7)
-        << line;
-    EXPECT_NEAR(whole, quadrant[0] + quadrant[1] + quadrant[2] + quadrant[3],
-                1e-6 * std::abs(whole) + 1e-6);
-    if (whole > largest) {
-      largest = whole;
-      at = dx;
-    }
-    ++count;
-  }
-  EXPECT_EQ(count, 16 + 71 / 4 + 1);
-  EXPECT_EQ(at, 2);
-}
-
-TEST_F(ResponseCommand, WritesArraysAndAReport) {
-  const ProcessResult result =
-      succeeds(response(folder_ / "r.npy", {"--displacements-x=-3:9", "--displacements-y=-2:2",
-                                            "--report", folder_ / "r.json", "--quiet"}));
-  EXPECT_THAT(result.err, IsEmpty());
-  const std::string npy = read_file(folder_ / "r.npy");
-  EXPECT_THAT(npy.substr(0, 128), HasSubstr("'descr': '<f8'"));
-  EXPECT_THAT(npy.substr(0, 128), HasSubstr("'shape': (5,5,13,)"));
-  EXPECT_EQ((npy.size() - 5 * 5 * 13 * 8) % 64, 0U);
-  const auto report = read_json(folder_ / "r.json");
-  EXPECT_EQ(report["settings"]["displacements-x"], "-3:9");
-  EXPECT_EQ(report["results"]["dominant"]["whole"]["dx_px"], 2);
-  EXPECT_EQ(report["results"]["dominant"]["whole"]["dy_px"], 0);
-}
-
-using InputResponseCommand = ResponseCommand;
-
-TEST_F(InputResponseCommand, BadInputIsOneLine) {
-  const std::string out = folder_ / "r.csv";
-  const std::vector<Refusal> refusals = {
-      {{"--displacements-x", "5:4"}, "displacements-x is 5:4"},
-      {{"--displacements-x", "wide"}, "--displacements-x is 'wide', expected MIN:MAX"},
-      {{"--displacements-y", "auto"}, "--displacements-y is 'auto'"},
-      {{"--alpha", "-1"}, "alpha is -1"},
-      {{"--norm", "l1", "--gradient-components", "x"}, "norm has no effect"},
-      {{"--gradient", "prewitt"}, "--gradient is 'prewitt'"},
-      {{"--report", left_}, "which is also an input"}};
-  expect_refusals("book response", folder_.path(), refusals,
-                  [&](const Words& words) { return response(out, words); });
-  EXPECT_EQ(response(folder_ / "r.txt").exit_code, 2);
-  EXPECT_EQ(run_vantage({"book", "response", left_, folder_ / "none.png", "-o", out}).exit_code, 1);
-  EXPECT_FALSE(fs::exists(out));
-}
-
-TEST_F(ResponseCommand, ConstantImagesHaveNoneAndStillWriteTheirData) {
-  write_grey(folder_ / "grey.png", 40, 30, 77);
-  const ProcessResult result = succeeds(run_vantage(
-      {"book", "response", folder_ / "grey.png", folder_ / "grey.png", "-o", folder_ / "r.csv"}));
-  EXPECT_THAT(result.out, HasSubstr("none"));
-  EXPECT_THAT(read_file(folder_ / "r.csv"), HasSubstr("dx_px,dy_px,whole"));
-}
+namespace vantage::automatic_disparities_test {
 
 /// "MIN:MAX" of a report.
 std::pair<int, int> limits_of(const std::string& range) {
@@ -335,4 +252,4 @@ TEST_F(AutomaticDisparities, OfTwoDimensions) {
   EXPECT_GT(share_at(folder_ / "o.flo", kHeight, kWidth, -kDown, -kAcross), 0.9);
 }
 
-}  // namespace vantage::command_book_response_test
+}  // namespace vantage::automatic_disparities_test
