@@ -274,7 +274,7 @@ TEST_F(InputViewCommand, FoldersAreThoseOfRunsWithBothMaps) {
   const std::string whole = run("disparity,right-disparity", "whole");
   refuse({pairs}, 1, "holds no run");
   refuse({run("disparity", "half")}, 1, "--save disparity,right-disparity");
-  refuse({whole, "--preset", "fast"}, 2, "--preset has no effect with the folder of a run");
+  refuse({whole, "--preset", "quality"}, 2, "--preset has no effect with the folder of a run");
   write_photograph(pairs + "/left/0.png", read_photograph(right_));
   refuse({whole}, 1, "is of another input");
 }
