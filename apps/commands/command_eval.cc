@@ -11,6 +11,7 @@
 #include "apps/eval/folder_scores.h"
 #include "apps/eval/score_columns.h"
 #include "apps/eval/submission.h"
+#include "apps/eval/view_comparison.h"
 #include "apps/inputs/input_limits.h"
 #include "apps/inputs/map_camera_input.h"
 #include "apps/process/command_work.h"
@@ -22,7 +23,6 @@
 #include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/evaluation/disparity_evaluation.h"
-#include "engine/evaluation/view_evaluation.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
@@ -48,6 +48,8 @@ struct EvalJob {
   [[nodiscard]] bool has_folders() const { return !views && std::filesystem::is_directory(second); }
 };
 
+constexpr std::string_view kLevels = "grey levels";
+
 /// A row of the table on stdout.
 struct Row {
   std::string_view label;
@@ -59,28 +61,33 @@ struct Row {
 void add_eval_settings(Settings& settings, EvalJob& job) {
   settings.start_group("Files");
   settings
-      .positional("disparity", job.first,
-                  "Disparity map to evaluate, or a folder of maps; with --views a photograph")
+      .positional(
+          "disparity", job.first,
+          "Disparity map to evaluate, or a folder of maps; with --views a picture, a folder "
+          "of them or a video")
       .required = true;
   settings
       .positional("truth", job.second,
                   "True disparity map, or a folder of KITTI, Middlebury or ETH3D, or of true maps; "
-                  "with --views the true photograph")
+                  "with --views the true photographs")
       .required = true;
-  settings.flag("views", job.views, "Compare two photographs, not disparity maps");
+  settings.flag("views", job.views, "Compare pictures, not disparity maps");
   settings.number(
       "scale", job.truth_scale, "S",
       "Divide values of an integer TRUTH file by S; auto: 256 for 16-bit PNG, in folders "
       "what Middlebury states; otherwise required for 8-bit files");
   add_given_map_settings(settings, job.given);
-  settings.input_path("mask", job.mask, "FILE",
-                      "Evaluate only pixels that are white in this 8-bit image");
+  settings.input_path(
+      "mask", job.mask, "FILE",
+      "Evaluate only pixels that are white in this 8-bit image; with --views it may "
+      "be a folder or a video too");
   settings.integer("ignore-border", job.ignore_border_px, "PX",
                    "Number of rows and columns to leave out at each side");
   settings.start_group("Cameras, for given depths");
   add_map_camera_settings(settings, job.cameras, RigUse::kDepths);
   settings.start_group("Folders");
-  settings.path("csv", job.csv, "FILE.csv", "Write the table of a folder");
+  settings.path("csv", job.csv, "FILE.csv",
+                "Write the table of a folder, or of the frames of --views");
   add_submission_settings(settings, job.submission);
 }
 
@@ -109,7 +116,10 @@ void check(const EvalJob& job, const Settings& settings) {
                                    job.first, job.second));
     }
   } else {
-    settings.refuse_idle({"csv", "submission"}, "without folders");
+    settings.refuse_idle({"submission"}, "without folders");
+    if (!job.views) {
+      settings.refuse_idle({"csv"}, "without folders");
+    }
   }
   FileChecks files(settings);
   files.add_output(job.csv, "--csv", OutputKind::kTable);
@@ -135,26 +145,6 @@ DisparityMap read_map(const EvalJob& job, const std::string& path, Execution& ex
   return map;
 }
 
-/// 255 where all colours of an 8-bit image are 255. Masks often come with a palette, hence in
-/// colour.
-Mask read_mask(const std::string& path) {
-  const Photograph photograph = read_photograph(path);
-  const auto* pixels = std::get_if<Image<std::uint8_t>>(&photograph.pixels);
-  if (pixels == nullptr) {
-    throw Error(fmt::format("{}: not a mask, expected an 8-bit image", path));
-  }
-  const int colours = std::min(pixels->channels(), 3);
-  Mask mask(pixels->width(), pixels->height());
-  for (int y = 0; y < mask.height(); ++y) {
-    for (int x = 0; x < mask.width(); ++x) {
-      const std::uint8_t* pixel = pixels->row(y) + x * pixels->channels();
-      const bool is_white = std::all_of(pixel, pixel + colours, [](int v) { return v == 255; });
-      mask.at(x, y) = is_white ? 255 : 0;
-    }
-  }
-  return mask;
-}
-
 std::vector<Row> judge_disparity(const EvalJob& job, Execution& execution, RunReport& report) {
   std::vector<Remark> remarks;
   const auto maps = report.timed_file_access("read", [&] {
@@ -166,7 +156,8 @@ std::vector<Row> judge_disparity(const EvalJob& job, Execution& execution, RunRe
   options.ignore_border_px = job.ignore_border_px;
   Mask mask;
   if (!job.mask.empty()) {
-    mask = report.timed_file_access("read", [&] { return read_mask(job.mask); });
+    mask = report.timed_file_access(
+        "read", [&] { return white_pixels(read_photograph(job.mask), job.mask); });
     options.mask = mask.view();
   }
   const DisparityScores scores = report.timed_compute("evaluate", [&] {
@@ -234,23 +225,31 @@ void judge_folder(const EvalJob& job, Execution& execution, RunReport& report) {
   }
 }
 
-std::vector<Row> judge_view(const EvalJob& job, Execution& execution, RunReport& report) {
-  const auto photographs = report.timed_file_access(
-      "read", [&] { return std::pair(read_photograph(job.first), read_photograph(job.second)); });
-  Mask mask;
-  std::optional<ImageView<const std::uint8_t>> counted;
-  if (!job.mask.empty()) {
-    mask = report.timed_file_access("read", [&] { return read_mask(job.mask); });
-    counted = mask.view();
+std::vector<Row> judge_views(const EvalJob& job, Execution& execution, RunReport& report,
+                             SettingValue& frames) {
+  const ViewComparison compared = report.timed_compute(
+      "evaluate", [&] { return compare_views(job.first, job.second, job.mask, execution); });
+  tell_remarks(compared.remarks, job.common, report);
+  const ViewScores& scores = compared.scores;
+  std::vector<Row> rows = {
+      {"pixels", "pixels", static_cast<double>(scores.pixels), ""},
+      {"PSNR", "psnr_db", scores.psnr_db, "dB"},
+      {"IV-PSNR", "iv_psnr_db", compared.immersive_psnr_db, "dB"},
+      {"mean |difference|", "mean_absolute_difference", scores.mean_absolute_difference, kLevels},
+      {"SSIM", "ssim", scores.ssim.value_or(std::nan("")), ""}};
+  if (compared.frames.size() > 1) {
+    rows.push_back(
+        {"flicker", "flicker_levels", compared.flicker.mean_levels().value_or(0), kLevels});
+    if (!job.mask.empty()) {
+      rows.push_back({"flicker in mask", "masked_flicker_levels",
+                      compared.flicker.masked_mean_levels().value_or(std::nan("")), kLevels});
+    }
+    frames = compared.frames;
+    if (!job.csv.empty()) {
+      write_text_file(job.csv, score_csv(frames));
+    }
   }
-  const ViewScores scores = report.timed_compute("evaluate", [&] {
-    return evaluate_view(photographs.first, photographs.second, execution, counted);
-  });
-  return {{"pixels", "pixels", static_cast<double>(scores.pixels), ""},
-          {"PSNR", "psnr_db", scores.psnr_db, "dB"},
-          {"mean |difference|", "mean_absolute_difference", scores.mean_absolute_difference,
-           "grey levels"},
-          {"SSIM", "ssim", scores.ssim.value_or(std::nan("")), ""}};
+  return rows;
 }
 
 SettingValue results_of(const std::vector<Row>& rows) {
@@ -277,8 +276,7 @@ int command_eval(const Arguments& arguments) {
   EvalJob job;
   Settings settings(
       "eval",
-      "Compares a disparity map, a folder of maps or, with --views, a photograph with the "
-      "truth.");
+      "Compares a disparity map, a folder of maps or, with --views, pictures with the truth.");
   add_eval_settings(settings, job);
   add_common_settings(settings, job.common, Work::kWithoutMatching);
   add_input_limit_settings(settings, job.common.execution);
@@ -287,7 +285,8 @@ int command_eval(const Arguments& arguments) {
        "csv", "submission", "output", "report", "quiet"},
       {"vantage eval disparity.pfm truth.pfm", "vantage eval disparity.pfm truth.png --scale 4",
        "vantage eval maps kitti/training --csv kitti.csv",
-       "vantage eval --views view.png photograph.png"});
+       "vantage eval --views view.png photograph.png",
+       "vantage eval --views results/views photographs --mask results/holes"});
   if (!read_command_line(settings, arguments)) {
     return kExitDone;
   }
@@ -298,10 +297,15 @@ int command_eval(const Arguments& arguments) {
   if (job.has_folders()) {
     judge_folder(job, execution, report);
   } else {
-    const std::vector<Row> rows =
-        job.views ? judge_view(job, execution, report) : judge_disparity(job, execution, report);
+    SettingValue frames;
+    const std::vector<Row> rows = job.views ? judge_views(job, execution, report, frames)
+                                            : judge_disparity(job, execution, report);
     print_table(rows);
-    report.set_results(results_of(rows));
+    SettingValue results = results_of(rows);
+    if (!frames.is_null()) {
+      results["frames"] = frames;
+    }
+    report.set_results(results);
   }
   report.write(job.common.report);
   return kExitDone;

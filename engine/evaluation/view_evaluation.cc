@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/error.h"
@@ -18,30 +19,6 @@ constexpr double kWindowSigma = 1.5;
 constexpr double kLevelRange = 255;
 constexpr double kC1 = (0.01 * kLevelRange) * (0.01 * kLevelRange);
 constexpr double kC2 = (0.03 * kLevelRange) * (0.03 * kLevelRange);
-
-int colour_channels(const Photograph& photograph) { return photograph.channels() >= 3 ? 3 : 1; }
-
-// One row in grey levels: the colour channels interleaved, or their luma for one channel.
-void read_row(const Photograph& photograph, int y, int channels, std::vector<double>& levels) {
-  std::visit(
-      [&]<typename T>(const Image<T>& image) {
-        constexpr double kScale = kGreyLevelsPerUnit<T>;
-        const int stored = image.channels();
-        const T* row = image.row(y);
-        levels.resize(static_cast<std::size_t>(image.width()) * channels);
-        for (int x = 0; x < image.width(); ++x) {
-          const T* pixel = row + x * stored;
-          if (channels == 1 && stored >= 3) {
-            levels[x] = kScale * (0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2]);
-            continue;
-          }
-          for (int c = 0; c < channels; ++c) {
-            levels[x * channels + c] = kScale * pixel[c];
-          }
-        }
-      },
-      photograph.pixels);
-}
 
 struct DifferenceSums {
   std::int64_t pixels = 0;
@@ -145,8 +122,8 @@ double mean_similarity(const Photograph& view, const Photograph& truth, Executio
     std::vector<std::vector<double>> view_luma(end_row - first_row + kWindow - 1);
     std::vector<std::vector<double>> truth_luma(view_luma.size());
     for (std::size_t i = 0; i < view_luma.size(); ++i) {
-      read_row(view, first_row + static_cast<int>(i), 1, view_luma[i]);
-      read_row(truth, first_row + static_cast<int>(i), 1, truth_luma[i]);
+      read_level_row(view, first_row + static_cast<int>(i), 1, view_luma[i]);
+      read_level_row(truth, first_row + static_cast<int>(i), 1, truth_luma[i]);
     }
     WindowRow windows(view.width());
     std::array<const double*, kWindow> view_rows{};
@@ -166,6 +143,40 @@ double mean_similarity(const Photograph& view, const Photograph& truth, Executio
   return sum / (static_cast<double>(window_rows) * (view.width() - kWindow + 1));
 }
 
+}  // namespace
+
+double psnr_db(double mean_squared_difference) {
+  return mean_squared_difference == 0
+             ? std::numeric_limits<double>::infinity()
+             : 10 * std::log10(kLevelRange * kLevelRange / mean_squared_difference);
+}
+
+int compared_channels(const Photograph& a, const Photograph& b) {
+  return std::min(a.channels(), b.channels()) >= 3 ? 3 : 1;
+}
+
+void read_level_row(const Photograph& photograph, int y, int channels,
+                    std::vector<double>& levels) {
+  std::visit(
+      [&]<typename T>(const Image<T>& image) {
+        constexpr double kScale = kGreyLevelsPerUnit<T>;
+        const int stored = image.channels();
+        const T* row = image.row(y);
+        levels.resize(static_cast<std::size_t>(image.width()) * channels);
+        for (int x = 0; x < image.width(); ++x) {
+          const T* pixel = row + x * stored;
+          if (channels == 1 && stored >= 3) {
+            levels[x] = kScale * (0.299 * pixel[0] + 0.587 * pixel[1] + 0.114 * pixel[2]);
+            continue;
+          }
+          for (int c = 0; c < channels; ++c) {
+            levels[x * channels + c] = kScale * pixel[c];
+          }
+        }
+      },
+      photograph.pixels);
+}
+
 void require_equal_size(const char* what, int width, int height, const Photograph& truth) {
   if (width != truth.width() || height != truth.height()) {
     throw Error(fmt::format("{} is {}x{}, expected {}x{} as the other image", what, width, height,
@@ -173,22 +184,20 @@ void require_equal_size(const char* what, int width, int height, const Photograp
   }
 }
 
-}  // namespace
-
 ViewScores evaluate_view(const Photograph& view, const Photograph& truth, Execution& execution,
                          std::optional<ImageView<const std::uint8_t>> mask) {
   require_equal_size("the view", view.width(), view.height(), truth);
   if (mask) {
     require_equal_size("the mask", mask->width(), mask->height(), truth);
   }
-  const int channels = std::min(colour_channels(view), colour_channels(truth));
+  const int channels = compared_channels(view, truth);
   std::vector<DifferenceSums> rows(static_cast<std::size_t>(view.height()));
   execution.for_each_band(view.height(), [&](int first_row, int end_row) {
     std::vector<double> view_row;
     std::vector<double> truth_row;
     for (int y = first_row; y < end_row; ++y) {
-      read_row(view, y, channels, view_row);
-      read_row(truth, y, channels, truth_row);
+      read_level_row(view, y, channels, view_row);
+      read_level_row(truth, y, channels, truth_row);
       rows[y] = row_differences(view_row, truth_row, channels, mask ? mask->row(y) : nullptr);
     }
   });
@@ -206,13 +215,53 @@ ViewScores evaluate_view(const Photograph& view, const Photograph& truth, Execut
   ViewScores scores;
   scores.pixels = total.pixels;
   scores.mean_absolute_difference = total.absolute / values;
-  scores.psnr_db = total.squared == 0
-                       ? std::numeric_limits<double>::infinity()
-                       : 10 * std::log10(kLevelRange * kLevelRange * values / total.squared);
+  scores.mean_squared_difference = total.squared / values;
+  scores.psnr_db = psnr_db(scores.mean_squared_difference);
   if (view.width() >= kWindow && view.height() >= kWindow) {
     scores.ssim = mean_similarity(view, truth, execution);
   }
   return scores;
+}
+
+void ViewFlicker::add(const Photograph& view, const Photograph& truth,
+                      std::optional<ImageView<const std::uint8_t>> mask) {
+  require_equal_size("the view", view.width(), view.height(), truth);
+  const int channels = compared_channels(view, truth);
+  const bool has_last = !errors_.empty();
+  if (has_last) {
+    require_equal_size("the frame before", errors_.width(), errors_.height(), truth);
+  }
+  if (has_last && errors_.channels() != channels) {
+    throw Error("the frame is grey or in colour, expected as the one before");
+  }
+  errors_.resize(view.width(), view.height(), channels);
+  std::vector<double> view_row;
+  std::vector<double> truth_row;
+  for (int y = 0; y < view.height(); ++y) {
+    read_level_row(view, y, channels, view_row);
+    read_level_row(truth, y, channels, truth_row);
+    float* errors = errors_.row(y);
+    for (int x = 0; x < view.width(); ++x) {
+      double change = 0;
+      for (int i = x * channels; i < (x + 1) * channels; ++i) {
+        const auto error = static_cast<float>(view_row[i] - truth_row[i]);
+        change += std::abs(error - std::exchange(errors[i], error));
+      }
+      const bool is_masked =
+          (mask && mask->row(y)[x] == 255) || (!mask_.empty() && mask_.at(x, y) == 255);
+      for (int k = 0; has_last && k <= (is_masked ? 1 : 0); ++k) {
+        levels_[k] += change;
+        values_[k] += channels;
+      }
+    }
+  }
+  mask_ = mask ? Mask::copy_of(*mask) : Mask();
+}
+
+std::optional<double> ViewFlicker::mean_of(std::size_t pixels) const {
+  return values_[pixels] == 0
+             ? std::nullopt
+             : std::optional(levels_[pixels] / static_cast<double>(values_[pixels]));
 }
 
 }  // namespace vantage

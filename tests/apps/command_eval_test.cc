@@ -76,6 +76,36 @@ TEST_F(EvalCommand, ComparesViews) {
   EXPECT_THAT(table_, HasSubstr("inf dB"));
 }
 
+TEST_F(EvalCommand, ComparesSequencesOfViews) {
+  for (const char* folder : {"views", "truth", "masks"}) {
+    std::filesystem::create_directory(folder_ / folder);
+  }
+  Mask mask(20, 15);
+  mask.fill(0);
+  mask.at(3, 4) = 255;
+  for (int frame = 0; frame < 3; ++frame) {
+    const std::string name = "/00000" + std::to_string(frame) + ".png";
+    write_grey((folder_ / "truth") + name, 20, 15, 100 + 20 * frame);
+    write_mask((folder_ / "masks") + name, mask.view());
+    if (frame > 0) {  // the first view is missing
+      write_grey((folder_ / "views") + name, 20, 15, 100 + 20 * frame + 6 * (frame - 1));
+    }
+  }
+  const Words folders = {"--views", folder_ / "views", folder_ / "truth"};
+  const ProcessResult told = succeeds(run_vantage(joined({"eval"}, folders)));
+  EXPECT_THAT(told.err, HasSubstr("without a partner"));
+  const Words report = {"--quiet", "--report", folder_ / "r.json", "--csv", folder_ / "r.csv"};
+  succeeds(run_vantage(
+      joined(joined({"eval"}, folders), joined({"--mask", folder_ / "masks"}, report))));
+  const nlohmann::json scores = read_json(folder_ / "r.json")["results"];
+  EXPECT_EQ(scores["pixels"], 2);
+  EXPECT_EQ(scores["mean_absolute_difference"], 3);
+  EXPECT_EQ(scores["flicker_levels"], 6);
+  EXPECT_EQ(scores["masked_flicker_levels"], 6);
+  EXPECT_EQ(scores["frames"].size(), 2U);
+  EXPECT_THAT(read_file(folder_ / "r.csv"), HasSubstr("frames,pixels,psnr_db,iv_psnr_db\n"));
+}
+
 using InputEvalCommand = EvalCommand;
 
 TEST_F(InputEvalCommand, BadInputIsOneLine) {

@@ -1,5 +1,7 @@
 #include "engine/evaluation/view_evaluation.h"
 
+#include "engine/evaluation/immersive_psnr.h"
+
 #include "tests/engine/engine_test.h"
 
 namespace vantage::view_evaluation_test {
@@ -156,6 +158,136 @@ TEST(ViewEvaluation, SizesMustAgree) {
   const Mask mask(3, 4);
   EXPECT_THROW((void)evaluate_view(a, b, execution()), Error);
   EXPECT_THROW((void)evaluate_view(a, a, execution(), mask.view()), Error);
+}
+
+// Pixel by pixel, in double.
+double plain_iv_psnr(const Photograph& view, const Photograph& truth, const Mask* mask) {
+  const bool is_grey = view.channels() < 3 || truth.channels() < 3;
+  const auto component = [&](const Photograph& picture, int x, int y, int c) {
+    const double y_level = luma(picture, x, y);
+    const auto& image = std::get<Image<std::uint8_t>>(picture.pixels);
+    return c == 0   ? y_level
+           : c == 1 ? (image.at(x, y, 2) - y_level) / 1.772
+                    : (image.at(x, y, 0) - y_level) / 1.402;
+  };
+  const std::vector<double> weights =
+      is_grey ? std::vector<double>{4} : std::vector<double>{4, 1, 1};
+  const auto counts = [&](int x, int y) { return mask == nullptr || mask->at(x, y) == 255; };
+  const int width = view.width();
+  const int height = view.height();
+  const auto one_way = [&](const Photograph& from, const Photograph& to) {
+    std::vector<double> offset(weights.size());
+    double pixels = 0;
+    for (const auto [x, y] : positions_of(width, height)) {
+      pixels += counts(x, y) ? 1 : 0;
+      for (std::size_t c = 0; c < weights.size() && counts(x, y); ++c) {
+        offset[c] += component(to, x, y, int(c)) - component(from, x, y, int(c));
+      }
+    }
+    std::vector<double> squared(weights.size());
+    for (const auto [x, y] : positions_of(width, height)) {
+      double least = std::numeric_limits<double>::infinity();
+      std::vector<double> of_least(weights.size());
+      for (int v = std::max(0, y - 2); v <= std::min(height - 1, y + 2); ++v) {
+        for (int u = std::max(0, x - 2); u <= std::min(width - 1, x + 2); ++u) {
+          std::vector<double> now(weights.size());
+          double cost = 0;
+          for (std::size_t c = 0; c < weights.size(); ++c) {
+            now[c] = std::pow(component(from, x, y, int(c)) +
+                                  std::clamp(offset[c] / pixels, -2.55, 2.55) -
+                                  component(to, u, v, int(c)),
+                              2);
+            cost += weights[c] * now[c];
+          }
+          if (cost < least) {
+            least = cost;
+            of_least = now;
+          }
+        }
+      }
+      for (std::size_t c = 0; c < weights.size() && counts(x, y); ++c) {
+        squared[c] += of_least[c];
+      }
+    }
+    if (std::ranges::count(squared, 0.0) == std::ssize(squared)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    double sum = 0;
+    double sum_of_weights = 0;
+    for (std::size_t c = 0; c < weights.size(); ++c) {
+      sum += weights[c] * std::min(100.0, 10 * std::log10(255 * 255 * pixels / squared[c]));
+      sum_of_weights += weights[c];
+    }
+    return sum / sum_of_weights;
+  };
+  return std::min(one_way(view, truth), one_way(truth, view));
+}
+
+TEST(ImmersivePsnr, AgreesWithPlainTranscription) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 9}, {37, 23}}) {
+    Mask mask(width, height);
+    for (const auto [x, y] : positions_of(width, height)) {
+      mask.at(x, y) = (x + 2 * y) % 3 == 0 ? 255 : 254;
+    }
+    for (const int channels : {1, 3, 4}) {
+      const Photograph a = random_picture(width, height, channels, 1);
+      for (const int channels_of_truth : {1, 3}) {
+        const Photograph b = random_picture(width, height, channels_of_truth, 2);
+        const double whole = plain_iv_psnr(a, b, nullptr);
+        if (std::isinf(whole)) {
+          EXPECT_EQ(immersive_psnr_db(a, b, execution()), whole);
+          continue;
+        }
+        EXPECT_NEAR(immersive_psnr_db(a, b, execution()), whole, 1e-3);
+        EXPECT_NEAR(immersive_psnr_db(a, b, execution(), mask.view()), plain_iv_psnr(a, b, &mask),
+                    1e-3);
+      }
+    }
+  }
+}
+
+TEST(ImmersivePsnr, ForgivesShiftsAndSlightOffsets) {
+  const auto pattern = [](int dx, int dy, int more) {
+    return picture(40, 30, 3, [=](int x, int y, int c) {
+      return ((x + dx) * 37 + (y + dy) * 91 + c * 50) % 120 + 60 + more;
+    });
+  };
+  const Photograph truth = pattern(0, 0, 0);
+  EXPECT_EQ(immersive_psnr_db(truth, truth, execution()), std::numeric_limits<double>::infinity());
+  EXPECT_GT(immersive_psnr_db(pattern(2, -2, 2), truth, execution()), 25);
+  EXPECT_LT(evaluate_view(pattern(2, -2, 2), truth, execution()).psnr_db, 20);
+  const auto flat = [](int level) {
+    return picture(9, 8, 1, [=](int, int, int) { return level; });
+  };
+  EXPECT_NEAR(immersive_psnr_db(flat(80), flat(100), execution()),
+              20 * std::log10(255 / (20 - 2.55)), 1e-4);
+  const double expected = immersive_psnr_db(pattern(2, 1, 9), truth, execution());
+  Execution other({.threads = 3});
+  EXPECT_EQ(immersive_psnr_db(pattern(2, 1, 9), truth, other), expected);
+}
+
+TEST(ViewFlicker, CountsChangesOfTheError) {
+  ViewFlicker flicker;
+  Mask left_half(10, 6);
+  for (const auto [x, y] : positions_of(10, 6)) {
+    left_half.at(x, y) = x < 5 ? 255 : 0;
+  }
+  const auto view = [](int frame, int error) {
+    return picture(10, 6, 3, [=](int x, int y, int c) {
+      return 3 * frame + x + y + c + (x < 5 && c == 1 ? error : 7);
+    });
+  };
+  const auto truth = [](int frame) {
+    return picture(10, 6, 3, [=](int x, int y, int c) { return 3 * frame + x + y + c; });
+  };
+  flicker.add(view(0, 4), truth(0), left_half.view());
+  EXPECT_FALSE(flicker.mean_levels().has_value());
+  flicker.add(view(1, 4), truth(1), left_half.view());
+  EXPECT_EQ(flicker.mean_levels(), 0);  // the error stays
+  flicker.add(view(2, 16), truth(2), left_half.view());
+  EXPECT_NEAR(flicker.masked_mean_levels().value(), 12.0 / 3 / 2, 1e-12);
+  EXPECT_NEAR(flicker.mean_levels().value(), 12.0 / 3 / 2 / 2, 1e-12);
+  EXPECT_THROW(flicker.add(view(3, 0), random_picture(10, 5, 3, 1)), Error);
 }
 
 }  // namespace vantage::view_evaluation_test
