@@ -7,7 +7,6 @@
 #include "engine/matching/levels/stage_block_source.h"
 #include "engine/matching/levels/stage_fixed_energies.h"
 #include "engine/matching/options/method_rules.h"
-#include "engine/matching/selection/stage_coarser_selection.h"
 #include "engine/matching/selection/stage_fixed_energy_selection.h"
 #include "engine/matching/stereo_matcher.h"
 #include "kernels/compact_likelihoods/compact_likelihoods.h"
@@ -240,68 +239,6 @@ TEST(PrunedLevel, WithAllCandidatesIsTheFullLevel) {
                     cells_of(level, parameters, false, weights).cells)
               << candidates << " candidates";
         }
-      }
-    }
-  }
-}
-
-struct SelectedMap {
-  DisparityMap disparity_px = DisparityMap(kExtent.columns, kExtent.rows);
-  Image<float> confidence = Image<float>(kExtent.columns, kExtent.rows);
-
-  [[nodiscard]] MapOutputs outputs() {
-    return {.disparity_px = disparity_px.view(), .confidence = confidence.view()};
-  }
-  [[nodiscard]] bool equals(const SelectedMap& other) const {
-    return identical(disparity_px, other.disparity_px) && identical(confidence, other.confidence);
-  }
-};
-
-/// The winners of a level without iterations, pixel by pixel; with an expected result once per
-/// coarser column, and in every way it can be cut.
-void select_from_coarser(const Level& level, CandidateGeometry geometry,
-                         const CandidateBlocks* blocks, SelectedMap& map,
-                         const SelectedMap* expected = nullptr) {
-  const bool once = expected != nullptr;
-  MethodParameters parameters = bayes_parameters(0.4, 0.5);
-  parameters.iterations = parameters.final_iterations = 0;
-  const EnergyFormat format(parameters);
-  const EnergySelector selector(Subpixel::kParabola, format.steps_per_nat(), map.outputs());
-  std::vector<std::unique_ptr<scheduler::RowStage>> stages;
-  if (once) {
-    stages.push_back(make_coarser_selection_stage(geometry, kExtent.rows, selector, format,
-                                                  {.volume = &level.coarser}, blocks));
-  } else {
-    stages = make_max_product_stages(parameters, {.geometry = geometry,
-                                                  .height = kExtent.rows,
-                                                  .coarser = &level.coarser,
-                                                  .blocks = blocks});
-    stages.push_back(make_fixed_energy_selection_stage(geometry, kExtent.rows, selector, blocks));
-  }
-  std::vector<const scheduler::RowStage*> chain;
-  for (const auto& stage : stages) {
-    chain.push_back(stage.get());
-  }
-  scheduler::run_whole_image(chain);
-  if (expected != nullptr) {
-    EXPECT_TRUE(map.equals(*expected));
-    run_in_strips(chain, [&] { ASSERT_TRUE(map.equals(*expected)); });
-  }
-}
-
-TEST(PrunedLevel, WithoutIterationsSelectsOncePerCoarserColumn) {
-  for (const int candidates : {5, 40, 100}) {
-    const Level level(candidates, 2, candidates == 40);
-    for (const int direction : {-1, 1}) {
-      CandidateGeometry geometry = level.geometry;
-      geometry.direction = direction;
-      geometry.disparity_min = candidates == 5 ? -2 : -30;
-      for (const CandidateBlocks* const blocks : {&level.blocks, kAllBlocks}) {
-        SelectedMap of_pixels;
-        SelectedMap of_columns;
-        SCOPED_TRACE(std::to_string(candidates) + " candidates, " + std::to_string(direction));
-        select_from_coarser(level, geometry, blocks, of_pixels);
-        select_from_coarser(level, geometry, blocks, of_columns, &of_pixels);
       }
     }
   }

@@ -10,7 +10,6 @@
 #include "engine/matching/levels/stage_fixed_energies.h"
 #include "engine/matching/levels/stage_half_energies.h"
 #include "engine/matching/levels/stage_level_likelihoods.h"
-#include "engine/matching/selection/stage_coarser_selection.h"
 #include "engine/matching/volume/stage_volume.h"
 
 namespace vantage {
@@ -37,18 +36,6 @@ bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
          input.grid == nullptr;
 }
 
-namespace {
-
-/// Whether the level selects from the energies of the coarser one as they are.
-bool repeats_coarser(const MethodParameters& parameters, const ChainInput& input,
-                     const ChainLevel& level) {
-  return uses_fixed_energies(parameters) && parameters.selection == Selection::kWinner &&
-         input.grid == nullptr && level.coarser != nullptr && level.result == nullptr &&
-         level.volume == nullptr && at_level(parameters, level.number).iterations == 0;
-}
-
-}  // namespace
-
 MatchChain::MatchChain(const MethodParameters& parameters,
                        const kernels::CandidateGeometry& geometry, const ChainInput& input,
                        const MapOutputs& outputs, const ChainLevel& level)
@@ -69,18 +56,6 @@ MatchChain::MatchChain(const MethodParameters& parameters,
   }
   if (level.reduced != nullptr) {
     add_reduction(parameters, input, level);
-    return;
-  }
-  if (repeats_coarser(parameters, input, level)) {
-    add(make_coarser_selection_stage(
-        geometry_, height_, energy_selector(parameters), EnergyFormat(parameters),
-        {.volume = level.coarser, .blocks = level.coarser_blocks}, level.blocks));
-    if (regions_) {  // that stage's rows and columns are those of the coarser level
-      for (scheduler::Region& region : *regions_) {
-        region = {{region.columns.begin / 2, (region.columns.end + 1) / 2},
-                  {region.rows.begin / 2, (region.rows.end + 1) / 2}};
-      }
-    }
     return;
   }
   add_costs(parameters, input, level);
