@@ -50,15 +50,12 @@ Matcher::Matcher(const std::optional<StereoCalibration>& unrectified, bool on_re
     : setup_(match_setup(keywords)), matcher_(setup_.options, *setup_.execution) {
   if (unrectified) {
     UnrectifiedMatcher::validate(setup_.options);
-    if (keywords.contains("cross_check_level") && !keywords["cross_check_level"].is_none()) {
-      throw UsageError("cross-check-level has no effect with unrectified: whole maps are compared");
-    }
     unrectified_ =
         std::make_shared<const UnrectifiedPairs>(*unrectified, on_rectified, *setup_.execution);
   } else if (on_rectified) {
     throw UsageError("rectified-pixels has no effect without unrectified");
   }
-  for (const char* const option : {"cross_check_level", "search_size", "window_levels"}) {
+  for (const char* const option : {"search_size", "window_levels"}) {
     if (keywords.contains(option) && !keywords[option].is_none()) {
       pair_option_ = option;
     }
@@ -72,7 +69,7 @@ void Matcher::check(const ImageArguments& arguments) const {
   if (pair_option_) {
     throw UsageError(*pair_option_ +
                      " has no effect with several images: all candidates are searched at full "
-                     "size, and whole maps are compared");
+                     "size");
   }
   if (setup_.options.reference == Side::kRight) {
     throw UsageError(

@@ -87,8 +87,6 @@ ProfiledChoices ProfiledCommand::choices() const {
   choices.checks_rows = match_job != nullptr ? match_job->rows.check : run_job->check_rectification;
   choices.has_map_for_check_only =
       !match.raw && refinement.cross_check && !needs_both && !has_several;
-  choices.can_check_coarse_map =
-      can_check_levels(match.resolved()) && refinement.cross_check_level == 0;
   return choices;
 }
 

@@ -66,9 +66,6 @@ constexpr Rule kMatchRules[] = {
      "expected none with disparities-y: surfaces slant along one range only", kNoPenalty},
     {kMatch, "edge-snapping > 0", "disparities-y",
      "expected 0 with disparities-y: it moves discontinuities of horizontal disparities only"},
-    {kMatch, "cross-check-level > 0", "disparities-y",
-     "expected 0 with disparities-y: winners of coarse levels are kept of searches along rows "
-     "only"},
     {kMatch, "cross-check = on", "selection = symmetric",
      "expected none with selection symmetric: both maps are of one solution", 0},
     {kMatch, "candidate-step < 1", "selection = symmetric",
@@ -78,16 +75,9 @@ constexpr Rule kMatchRules[] = {
     {kMatch, "search-size != full", kObstaclesOfReducedSearch, kNeedsOfReducedSearch, 0},
     {kMatch, "edge-snapping > 0", "search-size != full",
      "expected 0 with a reduced search-size: maps are enlarged along the image's edges instead"},
-    {kMatch, "cross-check-level > 0", "search-size != full",
-     "expected 0 with a reduced search-size: both maps have half the size"},
-    {kMatch, "cross-check-level > 0", kObstaclesOfCheckedLevels,
-     "expected 0: only aggregation bayes with levels above 1 and selection winner has maps of "
-     "coarse levels"},
     // Refinement that nothing reads; see also raw_rules().
     {kMatch, "user cross-check PX", "cross-check = none",
      "a number of pixels for cross-check is set but has no effect with cross-check none"},
-    {kMatch, "cross-check-level > 0", "cross-check = none",
-     "{option} is set but has no effect with cross-check none"},
     {kMatch, "user uniform-contrast != 1",
      "fill = constant | fill = linear | fill = median | fill = none",
      "{option} is set but has no effect with a fill other than canonical and thin-plate"},
@@ -107,8 +97,6 @@ constexpr CombinationScope kMatchJob = CombinationScope::kMatchJob;
 constexpr Rule kMatchJobRules[] = {
     // Photographs that are not rectified.
     {kMatchJob, "rectified-pixels", "unless unrectified", "no effect without --unrectified"},
-    {kMatchJob, "cross-check-level", "unrectified",
-     "no effect with --unrectified: whole maps are compared"},
     {kMatchJob, "tuning | no-tuning", "unrectified",
      "no effect with --unrectified: tuning is for rectified pairs"},
     {kMatchJob, "no-rectification-check | rows", "unrectified", "no effect with --unrectified"},
@@ -138,8 +126,6 @@ constexpr Rule kMatchJobRules[] = {
      "--posterior-mean and --posterior-variance cannot be used with --unrectified: candidates "
      "differ by fractions from pixel to pixel"},
     // Several images of cameras on one line.
-    {kMatchJob, "cross-check-level", "baselines | more",
-     "no effect with several images: they are checked against whole maps"},
     {kMatchJob, "search-size | window-levels", "baselines | more",
      "no effect with several images: all candidates are searched at full size"},
     {kMatchJob, "tuning", "baselines | more", "no effect with several images: tuning is for pairs"},

@@ -50,7 +50,5 @@ inline constexpr std::string_view kObstaclesOfReducedSearch =
     "aggregate != bayes | levels = 1 | prior-smoothing = sum | prior = quadratic | "
     "selection != winner | candidate-step < 1 | cost != census-rays | colour = channels | "
     "census-thresholds > 1";
-inline constexpr std::string_view kObstaclesOfCheckedLevels =
-    "aggregate != bayes | levels = 1 | selection != winner";
 
 }  // namespace vantage

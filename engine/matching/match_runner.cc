@@ -34,22 +34,15 @@ void require_reuse(const SearchAbilities& abilities, const SearchJob& job) {
 /// Sets what is computed of each image's map: the map if it is requested or needed to check the
 /// other one; what the other one is checked against.
 void set_needs(const SearchAbilities& abilities, SearchJob& job) {
-  if (job.is_checked() && abilities.coarse_checks) {
-    job.check_level =
-        std::min(job.options.refinement->cross_check_level, job.plan.levels.coarsest());
-  }
-  const bool has_level = job.check_level > 0;
-  const bool has_check_maps = job.is_checked() && abilities.coarse_checks && !has_level &&
+  const bool has_check_maps = job.is_checked() && abilities.check_maps &&
                               job.plan.levels.has_check_map && !job.options.disparities_y &&
                               job.options.refinement->edge_snapping_px == 0;
   for (MapTask& task : job.tasks) {
     const bool is_other_wanted =
         job.tasks.size() > 1 && job.task_of(other_side(task.side)).is_result;
-    task.need = {.whole = task.is_result || (job.is_checked() && !has_level),
-                 .coarse = has_level && is_other_wanted,
+    task.need = {.whole = task.is_result || job.is_checked() || job.is_symmetric(),
                  .check = has_check_maps && is_other_wanted,
                  .check_is_only = has_check_maps && !task.is_result};
-    task.need.whole = task.need.whole || job.is_symmetric();
   }
 }
 
@@ -173,7 +166,7 @@ void MatchRunner::run(const MatchCall& given, const MatchRequest& request, Dispa
   }
   search->prepare();
   for (MapTask& task : job.tasks) {
-    if (task.need.any()) {
+    if (task.need.whole) {
       clock.start(task.name);
     }
     search->search(task);
@@ -237,8 +230,8 @@ bool MatchRunner::choose_tiles(MapSearch& search, SearchJob& job) const {
   std::uint32_t needed = job.wants_confidence() ? 1 : 0;
   for (const Side side : {Side::kLeft, Side::kRight}) {
     const MapTask& task = job.task_of(side);
-    for (const bool is_needed : {task.is_result, task.need.whole, task.need.coarse, task.need.check,
-                                 task.need.check_is_only}) {
+    for (const bool is_needed :
+         {task.is_result, task.need.whole, task.need.check, task.need.check_is_only}) {
       needed = 2 * needed + (is_needed ? 1 : 0);
     }
   }

@@ -60,7 +60,7 @@ constexpr std::array<SearchEntry, 5> kSearches = {{
          [](SearchJob& job, SearchPools& pools) {
            return lending<ReducedSearch>(job, pools.reduced, pools.deferred_images);
          }},
-    {.abilities = {.name = "coarse to fine", .reuse = true, .coarse_checks = true},
+    {.abilities = {.name = "coarse to fine", .reuse = true, .check_maps = true},
      .serves = [](const ResolvedMatchOptions& options,
                   const MatchSize&) { return options.parameters.levels > 1; },
      .plan = PairSearch::plan,

@@ -159,10 +159,6 @@ inline constexpr std::array kOptionTexts = {
                "Pixels whose left and right disparities differ by PX or more count as unmatched, "
                "at least 1; none: no check",
                "number of candidates / 15, at least 1"},
-    OptionText{
-        "cross-check-level", "N",
-        "With bayes and several levels: cross-check against the other map at 1/2^N of the size, 0 "
-        "to 9; if that map is not an output, its finer levels are skipped, which is faster"},
     OptionText{"confidence-threshold", "X|none",
                "Pixels whose confidence (see --confidence of match) is X or less count as "
                "unmatched; none: no threshold",

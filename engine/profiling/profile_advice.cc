@@ -26,8 +26,6 @@ double realtime_of(MatchPreset preset) {
   }
   return 1;
 }
-/// Time of a map at half size, with all coarser levels, relative to that of a whole map.
-constexpr double kHalfSizeMap = 0.5;
 constexpr double kMinShare = 0.05;
 /// More threads must save more than this.
 constexpr double kAsFast = 1.05;
@@ -115,13 +113,10 @@ Advice about_one_map(const Steps& steps, const ProfiledChoices& choices) {
     return {0, ""};
   }
   const double other_s = std::min(steps.seconds("match left"), steps.seconds("match right"));
-  const std::string less = choices.can_check_coarse_map
-                               ? "--cross-check-level 1 (a map of half the size will do) or "
-                               : "";
-  return {steps.share(other_s) * (choices.can_check_coarse_map ? kHalfSizeMap : 1),
-          fmt::format("{}--cross-check none: a second map is made only to check the first, which "
+  return {steps.share(other_s),
+          fmt::format("--cross-check none: a second map is made only to check the first, which "
                       "takes {}.",
-                      less, steps.text(other_s))};
+                      steps.text(other_s))};
 }
 
 /// Advises fewer threads that are as fast, or more if available.

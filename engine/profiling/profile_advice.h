@@ -18,7 +18,6 @@ struct ProfiledChoices {
   bool checks_rows = false;           ///< checks that the rows of a pair correspond
   /// The map of the non-reference image is computed only to check the other one.
   bool has_map_for_check_only = false;
-  bool can_check_coarse_map = false;  ///< --cross-check-level could be above 0, and is 0
 };
 
 /// Advice to the user of a command about its time, one sentence with an option each, largest saving

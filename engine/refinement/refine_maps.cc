@@ -14,11 +14,6 @@ void check_against(const MapToRefine& to_refine, const MapToRefine& other, doubl
                    Execution& execution) {
   MatchedMap& map = *to_refine.map;
   const MatchedMap& partner = *other.map;
-  if (!other.coarse.winners.empty()) {
-    cross_check(map.disparity_px.view(), other.coarse, to_refine.side, tolerance_px, execution,
-                map.unmatched);
-    return;
-  }
   if (map.disparity_y_px.empty()) {
     cross_check(map.disparity_px.view(),
                 other.check_px.empty() ? partner.disparity_px.view() : other.check_px,

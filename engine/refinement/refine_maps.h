@@ -42,9 +42,7 @@ struct MapToRefine {
   /// refine, only the other one to check. `disparity_y_px`: of a two-dimensional search, else
   /// empty. `confidence`: read if uses_confidence(). `unmatched` is output only.
   MatchedMap* map = nullptr;
-  /// Checks the other map in place of this one. Empty: the map itself.
-  CoarseWinners coarse = {};
-  /// The same, image-sized.
+  /// Checks the other map in place of this one, image-sized. Empty: the map itself.
   ImageView<const float> check_px = {};
   /// Of several other images, in place of the other map: a pixel is matched if one of them agrees.
   std::span<const PartnerMap> partners = {};

@@ -64,19 +64,6 @@ void cross_check(ImageView<const float> map_px, ImageView<const float> other_px,
   });
 }
 
-void cross_check(ImageView<const float> map_px, const CoarseWinners& other, Side side,
-                 double tolerance_px, Execution& execution, Mask& unmatched) {
-  unmatched.resize(map_px.width(), map_px.height());
-  execution.for_each_row(map_px.height(), [&](int y) {
-    kernels::cross_check_winners_row(
-        row_to_check(map_px, y, side, tolerance_px, 1, unmatched),
-        {.winners = other.winners.row(y >> other.level),
-         .level = other.level,
-         .disparity_min = other.disparity_min,
-         .px_per_candidate = 1.0F / static_cast<float>(other.steps_per_px)});
-  });
-}
-
 void cross_check(const DisplacementView& map, const DisplacementView& other, Side side,
                  double tolerance_px, Execution& execution, Mask& unmatched) {
   unmatched.resize(map.x_px.width(), map.x_px.height());

@@ -18,18 +18,6 @@ void cross_check(ImageView<const float> map_px, ImageView<const float> other_px,
                  double tolerance_px, Execution& execution, Mask& unmatched,
                  float columns_per_px = 1);
 
-/// Winners of a coarse level of a map: numbers of candidates.
-struct CoarseWinners {
-  ImageView<const std::int32_t> winners = {};
-  int level = 0;          ///< a winner is valid for 2^level × 2^level pixels
-  int disparity_min = 0;  ///< disparity of candidate 0, in candidates
-  int steps_per_px = 1;   ///< candidates per pixel of disparity
-};
-
-/// The same against the winners of a coarse level of the other image's map.
-void cross_check(ImageView<const float> map_px, const CoarseWinners& other, Side side,
-                 double tolerance_px, Execution& execution, Mask& unmatched);
-
 /// Cross-check of both components: a pixel is matched if its (rounded) partner is inside the image
 /// and known, and both components agree.
 void cross_check(const DisplacementView& map, const DisplacementView& other, Side side,

@@ -33,10 +33,6 @@ struct RefinementOptionsOf {
   Field<bool> cross_check = by_default<Field>(true);
   /// Left and right disparities agree if they differ by less than this, ≥ 1 (5.13).
   Field<double> cross_check_px = by_default<Field>(1.0);
-  /// Level of the other image's map (coarse to fine, Bayesian diffusion) that a map is checked
-  /// against: its winners, each valid for all the pixels that it covers. 0: the map itself; 0..9,
-  /// capped at the coarsest level. A map that is not requested is computed down to this level only.
-  Field<int> cross_check_level = by_default<Field>(0);
   /// Pixels with at most this confidence are unmatched (5.14), in the unit of the method's
   /// confidence; −infinity: off.
   Field<double> confidence_threshold = by_default<Field>(kNoConfidenceThreshold);
@@ -96,8 +92,6 @@ constexpr void visit_fields(const Visit& visit, Options&... options) {
   // One option sets two fields, the number first: a number, or no check.
   visit(Field{"cross-check", kAgreement}, options.cross_check_px...);
   visit(Field{"cross-check"}, options.cross_check...);
-  visit(Field{"cross-check-level", {is_within<0, 9>, "a level from 0 to 9"}},
-        options.cross_check_level...);
   visit(Field{"confidence-threshold", kThreshold}, options.confidence_threshold...);
   visit(Field{"speckle-size", kSize}, options.speckle_size_px...);
   visit(Field{"surface-fit", kRadius}, options.surface_fit_px...);

@@ -15,22 +15,11 @@ struct CrossCheckRow {
   float columns_per_px = 1;
 };
 
-/// A row of winners on a coarse level, each of which is valid for 2^level columns.
-struct CoarseWinnerRow {
-  const std::int32_t* winners = nullptr;  ///< ⌈width / 2^level⌉ numbers of candidates
-  int level = 0;
-  int disparity_min = 0;       ///< disparity of candidate 0, in steps
-  float px_per_candidate = 1;  ///< a power of two
-};
-
 /// Marks the pixels of one row of a disparity map that the other image's map contradicts (5.13).
 /// unmatched[x] = 255 if own_px[x] is unknown (NaN), if the partner column floor(x + s + ½) with
 /// s = direction · columns_per_px · d, rounded to float, is outside the row, if the other map is
 /// unknown there, or if |own − other| ≥ tolerance_px; otherwise 0. other_px: `width` values. All
 /// else is exact, so identical on every instruction set.
 void cross_check_row(const CrossCheckRow& row, const float* other_px);
-
-/// The same against winners of a coarse level.
-void cross_check_winners_row(const CrossCheckRow& row, const CoarseWinnerRow& other);
 
 }  // namespace vantage::kernels

@@ -38,58 +38,10 @@ HWY_INLINE auto differ_less(D d, V a, V b, const Tolerance& tolerance) {
   return hn::Or(is_less, hn::And(is_equal, is_less_exactly));
 }
 
-// A row of the other map.
-struct OtherMap {
-  const float* px;
-
-  template <class D>
-  HWY_INLINE hn::VFromD<D> load(D d, int first) const {
-    return hn::LoadU(d, px + first);
-  }
-  template <class D, class V>
-  HWY_INLINE hn::VFromD<D> gather(D d, V columns) const {
-    return hn::GatherIndex(d, px, columns);
-  }
-};
-
-struct OtherWinners {
-  CoarseWinnerRow row;
-  int last;  // index of the last winner
-
-  // Neighbouring columns from `first` on.
-  template <class D>
-  HWY_INLINE hn::VFromD<D> load(D d, int first) const {
-    const hn::RebindToSigned<D> d_int;
-    const int lanes = static_cast<int>(hn::Lanes(d));
-    // A whole vector of winners that holds those of all lanes.
-    const int start = HWY_MAX(0, HWY_MIN(first >> row.level, last + 1 - lanes));
-    if (start + lanes > last + 1) {
-      return gather(d, hn::Add(hn::Iota(d_int, 0), hn::Set(d_int, first)));
-    }
-    const auto columns = hn::Add(hn::Iota(d_int, 0), hn::Set(d_int, first - (start << row.level)));
-    const auto lane = hn::ShiftRightSame(columns, row.level);
-    return disparities(d, hn::TableLookupLanes(hn::LoadU(d_int, row.winners + start),
-                                               hn::IndicesFromVec(d_int, lane)));
-  }
-  template <class D, class V>
-  HWY_INLINE hn::VFromD<D> gather(D d, V columns) const {
-    const hn::RebindToSigned<D> d_int;
-    return disparities(d,
-                       hn::GatherIndex(d_int, row.winners, hn::ShiftRightSame(columns, row.level)));
-  }
-  template <class D, class V>
-  HWY_INLINE hn::VFromD<D> disparities(D d, V winners) const {
-    return hn::Mul(
-        hn::ConvertTo(d, hn::Add(winners, hn::Set(hn::RebindToSigned<D>(), row.disparity_min))),
-        hn::Set(d, row.px_per_candidate));
-  }
-};
-
-// Processes columns [begin, end) while whole vectors fit; other_px reads the other map.
-// Returns the first remaining column.
-template <class D, class Other>
+// Processes columns [begin, end) while whole vectors fit. Returns the first remaining column.
+template <class D>
 HWY_INLINE int check_columns(D d, const CrossCheckRow& row, const Tolerance& tolerance, int begin,
-                             int end, const Other& other_px) {
+                             int end, const float* other_px) {
   // Farther than any row is wide, and with halves.
   constexpr float kFar = 1 << 22;
   const hn::RebindToSigned<D> d_int;
@@ -119,8 +71,9 @@ HWY_INLINE int check_columns(D d, const CrossCheckRow& row, const Tolerance& tol
     const bool are_neighbours =
         step > 1 &&
         hn::AllTrue(d_int, hn::And(is_inside, hn::Eq(columns, hn::Set(d_int, first - x))));
-    const auto other = are_neighbours ? other_px.load(d, first)
-                                      : other_px.gather(d, hn::IfThenElseZero(is_inside, partner));
+    const auto other = are_neighbours
+                           ? hn::LoadU(d, other_px + first)
+                           : hn::GatherIndex(d, other_px, hn::IfThenElseZero(is_inside, partner));
     const auto agrees =
         hn::And(hn::RebindMask(d, is_inside), differ_less(d, own, other, tolerance));
     const auto mark = hn::IfThenElse(hn::RebindMask(d_int, agrees), zero, hn::Set(d_int, 255));
@@ -129,19 +82,10 @@ HWY_INLINE int check_columns(D d, const CrossCheckRow& row, const Tolerance& tol
   return x;
 }
 
-template <class Other>
-HWY_INLINE void check_row(const CrossCheckRow& row, const Other& other_px) {
+void cross_check(const CrossCheckRow& row, const float* other_px) {
   const Tolerance tolerance(row.tolerance_px);
   const int done = check_columns(hn::ScalableTag<float>(), row, tolerance, 0, row.width, other_px);
   check_columns(hn::CappedTag<float, 1>(), row, tolerance, done, row.width, other_px);
-}
-
-void cross_check(const CrossCheckRow& row, const float* other_px) {
-  check_row(row, OtherMap{other_px});
-}
-
-void cross_check_winners(const CrossCheckRow& row, const CoarseWinnerRow& other) {
-  check_row(row, OtherWinners{other, (row.width - 1) >> other.level});
 }
 
 }  // namespace vantage::kernels::HWY_NAMESPACE
@@ -150,13 +94,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vantage::kernels {
 HWY_EXPORT(cross_check);
-HWY_EXPORT(cross_check_winners);
 
 void cross_check_row(const CrossCheckRow& row, const float* other_px) {
   HWY_DYNAMIC_DISPATCH(cross_check)(row, other_px);
-}
-void cross_check_winners_row(const CrossCheckRow& row, const CoarseWinnerRow& other) {
-  HWY_DYNAMIC_DISPATCH(cross_check_winners)(row, other);
 }
 
 }  // namespace vantage::kernels

@@ -24,7 +24,7 @@ def choices():
     for cost in names_of("cost"):
         yield {"preset": None, "cost": cost}
     yield {"method": "ssd", "disparities_y": (-1, 1)}
-    yield {"reference": "right", "fill": "none", "cross_check_level": 1}
+    yield {"reference": "right", "fill": "none"}
     yield {"preset": "realtime", "disparities": "auto"}
 
 

@@ -63,8 +63,7 @@ def test_points_of_rectified_pixels(scene, pair, rig, tmp_path):
 def test_refusals_of_photographs(pair, rig):
     for options, message in [
             ({"selection": "symmetric"}, "selection is symmetric"),
-            ({"disparities_y": (0, 1)}, "disparities-y is set"),
-            ({"cross_check_level": 1}, "cross-check-level has no effect with unrectified")]:
+            ({"disparities_y": (0, 1)}, "disparities-y is set")]:
         with pytest.raises(vantage.UsageError, match=message):
             vantage.Matcher(unrectified=rig, **options)
     with pytest.raises(vantage.UsageError, match="rectified-pixels has no effect"):

@@ -6,7 +6,7 @@
 
 Images are NumPy arrays of uint8, uint16 or float32 (0 to 1), HxW or HxWx3, in RGB order unless
 bgr=True, of any strides; where the layout allows they are read in place. Options are those of the
-command line, with _ in place of - (cross_check_level=2). Errors of data are vantage.Error, invalid
+command line, with _ in place of - (surface_fit_step=1). Errors of data are vantage.Error, invalid
 options vantage.UsageError, which is a ValueError, too; each is one line. Calls release the GIL and
 share one pool of threads; Ctrl-C interrupts them. docs/python.md is a tutorial.
 """

@@ -75,11 +75,11 @@ Image<std::int32_t> coarse_winners(const PhotographPair& pair, const MatchOption
                          0,
                          edges.prepare(is_left ? pair.left : pair.right, parameters, execution())};
   Image<std::int32_t> winners;
-  CoarseToFine({parameters, geometry, input},
-               {.outputs = {.disparity_px = size_alone.view()},
-                .coarse = {.level = 1, .winners = &winners, .is_only = true}},
-               levels, execution(),
-               [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); })
+  CoarseToFine(
+      {parameters, geometry, input},
+      {.outputs = {.disparity_px = size_alone.view()}, .coarse = {.level = 1, .winners = &winners}},
+      levels, execution(),
+      [](const MatchChain& chain) { scheduler::run_whole_image(chain.stages()); })
       .search();
   return winners;
 }

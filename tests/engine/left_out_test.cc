@@ -83,7 +83,6 @@ std::vector<Case> all_searches() {
   };
   add("windows", [](MatchOptions& o) { o.method = MatchMethod::kSsd; });
   add("coarse to fine", [](MatchOptions& o) { o.preset = MatchPreset::kBalanced; });
-  add("checked levels", [](MatchOptions& o) { o.refinement.cross_check_level = 1; });
   add("reduced", [](MatchOptions& o) { o.preset = MatchPreset::kRealtime; });
   add("symmetric", [](MatchOptions& o) {
     o.method = MatchMethod::kBayes;

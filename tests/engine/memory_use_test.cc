@@ -27,7 +27,7 @@ void expect_images_of(std::size_t bytes, std::size_t pixel_bytes, int images) {
 /// What a match of a pair took.
 MemoryUse use_of(MatchOptions options, const ExecutionOptions& execution_options,
                  PixelKind pixels = PixelKind::kGrey8) {
-  options.raw = !options.refinement.cross_check_level;
+  options.raw = true;
   const auto [left, right] = textured_pair(kWidth, kHeight, options.disparities, pixels, 2);
   Execution execution(execution_options);
   const StereoMatcher matcher(options, execution);
@@ -117,16 +117,6 @@ TEST(MemoryUse, OfCoarseLevelsIsThatOfTheirCells) {
   expect_images_of(levels(4), 2 * (first + second) + third, 5);
   EXPECT_EQ(level_plan(options.resolved(), {kWidth, kHeight}, options.disparities.count()).bytes(),
             2 * (first + second) + third);
-  // What the other map is checked against: winners of the first coarse level, four bytes each.
-  const auto prepared = [&] {
-    return bytes_of(use_of(options, {.threads = 2}), "prepared images");
-  };
-  const std::size_t winners = std::size_t{306} * 42 * 4;
-  const std::size_t before = prepared();
-  options.refinement.cross_check_level = 1;
-  EXPECT_GE(prepared(), before + winners);
-  expect_images_of(levels(4), 2 * (first + second) + third, 5);
-  options.refinement.cross_check_level = {};
   options.method = MatchMethod::kMembrane;
   expect_images_of(levels(2), 2 * 2 * first, 2);
 }

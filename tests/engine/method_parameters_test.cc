@@ -302,7 +302,6 @@ TEST(MatchOptions, EveryBoundIsNamedInItsMessage) {
             MatchMethod::kGradient),
       bound("edge-snapping", &R::edge_snapping_px, {0, 16}, {-1, 17}, "from 0 to 16"),
       bound("cross-check", &R::cross_check_px, {1, 100}, {0.99, 0, kNan, kInfinity}, "at least 1"),
-      bound("cross-check-level", &R::cross_check_level, {0}, {-1, 10}, "from 0 to 9"),
       bound("confidence-threshold", &R::confidence_threshold, {-5, 0, 5, -kInfinity},
             {kNan, kInfinity}, "finite"),
       bound("speckle-size", &R::speckle_size_px, {0, 1000}, {-1}, "at least 0"),

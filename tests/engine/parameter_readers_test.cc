@@ -377,9 +377,6 @@ TEST(Refinement, WhatNothingReadsIsRefused) {
   EXPECT_EQ(fields.size(), count_fields<RefinementOptions>());
   options = {};
   options.refinement.cross_check = false;
-  options.refinement.cross_check_level = 1;
-  EXPECT_EQ(complaint(options), "cross-check-level is set but has no effect with cross-check none");
-  options.refinement.cross_check_level.reset();
   options.refinement.cross_check_px = 3;
   EXPECT_THAT(complaint(options), HasSubstr("has no effect with cross-check none"));
   options.refinement.cross_check_px.reset();

@@ -26,16 +26,14 @@ TEST(ProfileAdvice, WhatSavesMostComesFirst) {
   const ProfiledChoices choices{.preset = MatchPreset::kBalanced,
                                 .estimates_range = true,
                                 .checks_rows = true,
-                                .has_map_for_check_only = true,
-                                .can_check_coarse_map = true};
+                                .has_map_for_check_only = true};
   EXPECT_THAT(
       profile_advice(profile, kSteps, choices),
       ElementsAre(HasSubstr("--preset realtime: maps take 650 ms, 65 % of the time of all steps"),
+                  HasSubstr("--cross-check none: a second map is made only to check the first, "
+                            "which takes 300 ms, 30 %"),
                   HasSubstr("--disparities MIN:MAX, the range that 'auto' prints: looking for it "
                             "takes 200 ms, 20 %"),
-                  HasSubstr("--cross-check-level 1 (a map of half the size will do) or "
-                            "--cross-check none: a second map is made only to check the first, "
-                            "which takes 300 ms, 30 %"),
                   HasSubstr("--no-rectification-check, where rows are known to correspond: looking "
                             "at them takes 100 ms, 10 %")));
 }

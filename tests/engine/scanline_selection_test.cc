@@ -192,7 +192,6 @@ TEST(ScanlineSelectionOptions, AreCheckedTogether) {
     EXPECT_EQ(complaint(options), "");
     EXPECT_EQ(options.resolved().candidate_blocks, 0);
     EXPECT_EQ(options.resolved().search_size, SearchSize::kFull);
-    EXPECT_EQ(options.resolved_refinement().cross_check_level, 0);
   }
   options.parameters.candidate_blocks = 2;
   EXPECT_THAT(complaint(options), HasSubstr("candidate-blocks is 2, expected 0 with selection"));
@@ -200,9 +199,6 @@ TEST(ScanlineSelectionOptions, AreCheckedTogether) {
   options.parameters.search_size = SearchSize::kHalf;
   EXPECT_THAT(complaint(options), HasSubstr("selection winner"));
   options.parameters.search_size.reset();
-  options.refinement.cross_check_level = 1;
-  EXPECT_THAT(complaint(options), HasSubstr("cross-check-level is 1, expected 0"));
-  options.refinement.cross_check_level.reset();
   options.preset.reset();
   options.disparities_y = DisparityRange{-1, 1};
   EXPECT_THAT(complaint(options), HasSubstr("selection is scanline, expected winner"));

@@ -23,8 +23,8 @@ WORDS = {
     "PAIR": "scene/left.png scene/right.png",
     "FRAMES": "--left film/left --right film/right",
     "RANGE": "--disparities 1:17",
-    "CHECKED_LEVEL": "--preset balanced --census-thresholds 1 --iterations 2 --final-iterations 0"
-                     " --window-levels 0 --cross-check-level 1",
+    "WITHOUT_WINDOWS": "--preset balanced --census-thresholds 1 --iterations 2 --final-iterations 0"
+                       " --window-levels 0",
 }
 
 

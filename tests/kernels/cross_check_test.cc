@@ -124,37 +124,4 @@ TEST_P(CrossCheck, NothingIsRounded) {
   }
 }
 
-TEST_P(CrossCheck, WinnersOfACoarseLevelAreRepeated) {
-  std::mt19937 random(53);
-  constexpr int kMin = -7;
-  for (const int width : {1, 2, 15, 16, 17, 40, 63, 130}) {
-    for (int round = 0; round < 40; ++round) {
-      const int level = round % 4;
-      const float px_per_candidate = round % 2 == 0 ? 1.0F : 0.25F;
-      const int max_step = round % 3 == 0 ? 0 : 1;  // 0: all pixels have neighbouring partners
-      std::vector<std::int32_t> winners(((width - 1) >> level) + 1);
-      for (std::int32_t& winner : winners) {
-        winner = random_int(random, 0, 14);
-      }
-      std::vector<float> own(width);
-      std::vector<float> other(own.size());
-      for (std::size_t x = 0; x < own.size(); ++x) {
-        own[x] = x == 0 ? static_cast<float>(random_int(random, -40, 40)) / 4
-                        : own[x - 1] + static_cast<float>(random_int(random, -1, 1) * max_step) / 4;
-        other[x] = static_cast<float>(winners[x >> level] + kMin) * px_per_candidate;
-      }
-      GuardedRow<std::uint8_t> unmatched(own.size(), 3, kSentinel);
-      const CrossCheckRow row{.own_px = own.data(),
-                              .direction = 1,
-                              .tolerance_px = 3,
-                              .width = width,
-                              .unmatched = unmatched.data()};
-      const CoarseWinnerRow of_level{winners.data(), level, kMin, px_per_candidate};
-      cross_check_winners_row(row, of_level);
-      EXPECT_TRUE(unmatched.intact());
-      ASSERT_EQ(unmatched.values(), checked(own, other, 1, 3)) << width << ", level " << level;
-    }
-  }
-}
-
 }  // namespace vantage::kernels::cross_check_test

@@ -149,11 +149,6 @@ int candidate_count(DisparityRange disparities, const MethodParameters& paramete
   return steps_per_px(parameters) * (disparities.count() - 1) + 1;
 }
 
-bool can_check_levels(const MethodParameters& parameters) {
-  static const std::vector<Condition> obstacles = conditions(kObstaclesOfCheckedLevels);
-  return none_holds(obstacles, values_of(parameters, {}));
-}
-
 void MatchOptions::validate() const {
   const MethodParameters in_force = resolved();
   vantage::validate(in_force);

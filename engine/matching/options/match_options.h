@@ -19,9 +19,6 @@ inline constexpr int kMaxCandidates = 4096;
 /// Number of candidates of `disparities`, which include those between pixels.
 int candidate_count(DisparityRange disparities, const MethodParameters& parameters);
 
-/// Whether maps of these parameters have levels whose winners can be cross-checked.
-bool can_check_levels(const MethodParameters& parameters);
-
 /// The options that matching uses, after method, preset and defaults are applied.
 struct ResolvedMatchOptions {
   DisparityRange disparities;

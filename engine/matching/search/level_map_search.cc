@@ -14,7 +14,7 @@ void LevelMemory::add_use(MemoryUse& use) const {
     bytes += image.held_bytes();
   }
   for (const std::size_t i : {0, 1}) {
-    bytes += held_bytes(coarse_winners[i]) + held_bytes(check_px[i]);
+    bytes += held_bytes(check_px[i]);
   }
   use.add("prepared images", bytes);
   use.add("coarse levels", levels.held_bytes());
@@ -23,10 +23,10 @@ void LevelMemory::add_use(MemoryUse& use) const {
 LevelMapSearch::Targets LevelMapSearch::targets_of(const MapTask& task,
                                                    PreviousMaps::OfSide* kept) {
   if (kept != nullptr) {
-    return {kept->winners, kept->check_px, kept->coarse_winners, kept->levels};
+    return {kept->winners, kept->check_px, kept->levels};
   }
   const std::size_t side = index_of(task.side);
-  return {*task.map, memory_.check_px[side], memory_.coarse_winners[side], memory_.levels};
+  return {*task.map, memory_.check_px[side], memory_.levels};
 }
 
 void LevelMapSearch::resize(const MapTask& task, const Targets& targets) const {
@@ -47,10 +47,6 @@ WantedWinners LevelMapSearch::wanted_of(MapTask& task, const Targets& targets) c
       .outputs = {.disparity_px = task.need.whole ? targets.map.disparity_px.view() : size_alone,
                   .confidence = targets.map.confidence.view(),
                   .disparity_y_px = targets.map.disparity_y_px.view()}};
-  if (task.need.coarse) {
-    wanted.coarse = {
-        .level = job_.check_level, .winners = &targets.coarse_winners, .is_only = !task.need.whole};
-  }
   if (task.need.check) {
     const bool is_only = task.need.check_is_only;
     wanted.check = {.disparity_px = (is_only ? targets.map.disparity_px : targets.check_px).view(),
@@ -65,7 +61,7 @@ void LevelMapSearch::search_levels(MapTask& task, const ChainInput& prepared) {
       job_.previous != nullptr ? &job_.previous->of(task.side) : nullptr;
   const Targets targets = targets_of(task, kept);
   resize(task, targets);
-  if (!task.need.any()) {
+  if (!task.need.whole) {
     return;
   }
   ChainInput input = prepared;
@@ -79,21 +75,12 @@ void LevelMapSearch::search_levels(MapTask& task, const ChainInput& prepared) {
     wanted.parts = &parts;
   }
   LevelSearch(job_.options, job_.parameters, job_.execution, targets.levels, job_.report)
-      .compute(task.side, input, wanted,
-               task.need.whole ? task.volumes : std::span<const VolumeRequest>());
+      .compute(task.side, input, wanted, task.volumes);
   if (kept != nullptr) {
     job_.report.count_searched(kept->searched.share());
-    if (task.need.whole && !task.need.check_is_only) {
+    if (!task.need.check_is_only) {
       copy_winners(kept->winners, job_.execution, *task.map);
     }
-  }
-  if (task.need.coarse) {
-    const auto geometry =
-        candidate_geometry(job_.options, task.side, task.image->width(), task.image->height());
-    task.coarse = {.winners = std::as_const(targets.coarse_winners).view(),
-                   .level = job_.check_level,
-                   .disparity_min = geometry.disparity_min,
-                   .steps_per_px = geometry.steps_per_px};
   }
 }
 
@@ -116,7 +103,6 @@ MapToRefine LevelMapSearch::to_refine(const MapTask& task) const {
   return {.side = task.side,
           .image = task.image,
           .map = task.map,
-          .coarse = task.coarse,
           .check_px = task.check_px,
           .is_result = task.is_result,
           .search = job_.options.disparities,

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,8 +19,6 @@ struct LevelMemory {
   std::vector<CostImage> images;
   EdgeWeightLevels edges;  ///< of the map being computed
   CoarseLevels levels;
-  /// Coarse maps of the left and the right image for the cross-check.
-  std::array<Image<std::int32_t>, 2> coarse_winners;
   /// Check maps beside whole maps.
   std::array<DisparityMap, 2> check_px;
 
@@ -56,7 +53,6 @@ class LevelMapSearch : public MapSearch {
   struct Targets {
     MatchedMap& map;
     DisparityMap& check_px;
-    Image<std::int32_t>& coarse_winners;
     CoarseLevels& levels;
   };
   [[nodiscard]] Targets targets_of(const MapTask& task, PreviousMaps::OfSide* kept);

@@ -29,8 +29,8 @@ struct SearchAbilities {
   std::string_view no_symmetric_selection = {};
   std::string_view no_prior = {};
   std::string_view no_volumes = {};
-  bool reuse = false;          ///< of the maps of the pair before
-  bool coarse_checks = false;  ///< a map is checked against a coarse level of the other
+  bool reuse = false;       ///< of the maps of the pair before
+  bool check_maps = false;  ///< a map may be checked against less than the other (CheckMap)
 };
 
 /// An image of a call.
@@ -41,11 +41,9 @@ struct SearchedPhotograph {
 
 /// What is computed of an image's map: the map, and what is used to check the other one.
 struct MapNeed {
-  bool whole = false;   ///< the map, unless check_is_only
-  bool coarse = false;  ///< a coarse level
-  bool check = false;   ///< a check map
+  bool whole = false;  ///< the map, unless check_is_only
+  bool check = false;  ///< a check map
   bool check_is_only = false;
-  [[nodiscard]] bool any() const { return whole || coarse; }
 };
 
 /// One image and the map to compute for it.
@@ -58,9 +56,7 @@ struct MapTask {
   bool wants_confidence = false;
   std::span<const VolumeRequest> volumes = {};
   MapNeed need = {};
-  // Made by the search, to check the other map.
-  CoarseWinners coarse = {};             ///< empty: not needed
-  ImageView<const float> check_px = {};  ///< empty: not needed
+  ImageView<const float> check_px = {};  ///< made by the search; empty: not needed
 };
 
 /// One call: what searches read, and what is known of its maps. All references must outlive it.
@@ -79,7 +75,6 @@ struct SearchJob {
   SearchPlan plan = {};
   std::vector<MapTask> tasks = {};   ///< in the order of their searches
   PreviousMaps* previous = nullptr;  ///< of both maps; null: everything is searched
-  int check_level = 0;               ///< level that maps are checked against; 0: the maps
 
   [[nodiscard]] scheduler::Extent extent() const {
     return {images.front().photograph->width(), images.front().photograph->height()};

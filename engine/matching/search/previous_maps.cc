@@ -77,8 +77,7 @@ std::size_t PreviousMaps::held_bytes() const {
   std::size_t bytes = 0;
   for (const OfSide& side : sides_) {
     bytes += vantage::held_bytes(side.winners) + side.refinement.held_bytes() +
-             side.levels.held_bytes() + vantage::held_bytes(side.check_px) +
-             vantage::held_bytes(side.coarse_winners);
+             side.levels.held_bytes() + vantage::held_bytes(side.check_px);
   }
   return bytes;
 }

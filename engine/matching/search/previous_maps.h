@@ -32,8 +32,7 @@ class PreviousMaps {
     TileMask searched;   ///< tiles to search in the next map, of the map's size
     CoarseLevels levels{true};
     KeptRefinement refinement;
-    DisparityMap check_px;               ///< check map beside a whole map
-    Image<std::int32_t> coarse_winners;  ///< of the level that the other map is checked against
+    DisparityMap check_px;  ///< check map beside a whole map
   };
   /// What is computed of both maps. Pairs of different contents have nothing in common.
   struct Content {

@@ -71,7 +71,7 @@ LevelCells CoarseToFine::search(const std::vector<VolumeWriter>& volumes) {
     costs_.make_levels(wanted_.parts);
   }
   write_costs(volumes);
-  const int finest = wanted_.coarse.is_only ? wanted_.coarse.level : 0;
+  const int finest = wanted_.coarse.level;
   for (int level = plan.coarsest(); level >= std::max(finest, plan.has_windows ? 1 : 0); --level) {
     search_level(level, find_writer(volumes, VolumeKind::kAggregated, level));
   }

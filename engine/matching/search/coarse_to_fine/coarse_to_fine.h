@@ -19,14 +19,12 @@ struct LevelCells {
   double finest_level = 0;
 };
 
-/// The map of a coarse level, in addition to the image's own or instead of it. Bayesian diffusion
-/// only. Does not depend on whether finer levels are computed.
+/// The map of a coarse level instead of the image's own: no finer level is computed, and of the
+/// outputs only the size is used. Bayesian diffusion only.
 struct CoarseMap {
   int level = 0;  ///< 1 to the coarsest level; 0: not requested
   /// Resized to the level: numbers of candidates; pixels without a partner have one, too.
   Image<std::int32_t>* winners = nullptr;
-  /// No finer level is computed; of the outputs, only the size is used.
-  bool is_only = false;
 };
 
 /// What the other image's map is checked against, beside the map: the disparities of the map, but

@@ -65,7 +65,7 @@ void LevelSearch::compute(Side reference, const ChainInput& input, const WantedW
   search({parameters_, geometry, searched}, wanted,
          start_writers(reference, candidates, map_px.height(), volumes));
   if (geometry.steps_per_px > 1) {
-    const bool has_own_map = !wanted.coarse.is_only && !wanted.check.is_only;
+    const bool has_own_map = wanted.coarse.level == 0 && !wanted.check.is_only;
     for (const ImageView<float>& map :
          {has_own_map ? map_px : ImageView<float>(), wanted.check.disparity_px}) {
       convert_to_px(map, geometry.steps_per_px, execution_);
@@ -87,7 +87,7 @@ void LevelSearch::search(const SearchedImage& image, const WantedWinners& wanted
   };
   const LevelCells cells = CoarseToFine(image, wanted, levels_, execution_, run).search(writers);
   report_.cells += cells.all_levels;
-  if (wanted.coarse.is_only) {
+  if (wanted.coarse.level > 0) {
     if (!plan_before.passes.empty()) {
       report_.plan = std::move(plan_before);
     }

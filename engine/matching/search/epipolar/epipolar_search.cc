@@ -34,7 +34,7 @@ void EpipolarSearch::start() {
 }
 
 void EpipolarSearch::search(MapTask& task) {
-  if (task.need.any()) {
+  if (task.need.whole) {
     prepare_map(task);
     search_levels(task, input_);
   }

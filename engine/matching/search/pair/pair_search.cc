@@ -72,8 +72,8 @@ void PairSearch::prepare() {
 }
 
 void PairSearch::prepare_images(const kernels::CandidateGeometry& geometry) {
-  const bool needs_left = job_.task_of(Side::kLeft).need.any();
-  const bool needs_right = job_.task_of(Side::kRight).need.any();
+  const bool needs_left = job_.task_of(Side::kLeft).need.whole;
+  const bool needs_right = job_.task_of(Side::kRight).need.whole;
   // Windows read plain rows, with margins on both sides.
   const bool has_windows = job_.parameters.window_levels > 0;
   const auto margins = has_windows ? window_margins(geometry) : geometry;
@@ -101,14 +101,14 @@ void PairSearch::prepare_column_ssd(const kernels::CandidateGeometry& geometry) 
   const int window_px = job_.options.parameters.window_px;
   own_.pair.prepare(*job_.images[0].photograph, *job_.images[1].photograph, geometry,
                     window_px * window_px,
-                    {job_.task_of(Side::kLeft).need.any(), job_.task_of(Side::kRight).need.any()},
+                    {job_.task_of(Side::kLeft).need.whole, job_.task_of(Side::kRight).need.whole},
                     job_.execution);
   inputs_[0].pair = inputs_[1].pair = &own_.pair;
 }
 
 bool PairSearch::can_share_costs() const {
   const bool has_both =
-      job_.task_of(Side::kLeft).need.any() && job_.task_of(Side::kRight).need.any();
+      job_.task_of(Side::kLeft).need.whole && job_.task_of(Side::kRight).need.whole;
   return has_both && job_.previous == nullptr && !job_.is_symmetric() &&
          !job_.options.disparities_y &&
          shares_costs(job_.parameters, inputs_[0], job_.extent(),

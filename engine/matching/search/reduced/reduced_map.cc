@@ -105,7 +105,7 @@ void ReducedMap::search_all_candidates(CostSharing sharing) {
   LevelSearch(search_, search_.parameters, job_.execution, levels_, job_.report)
       .compute(side_, input,
                {.outputs = {.disparity_px = size},
-                .coarse = {.level = kSearchLevel, .winners = &memory_.winners, .is_only = true},
+                .coarse = {.level = kSearchLevel, .winners = &memory_.winners},
                 .parts = tiles_ != nullptr ? &parts_ : nullptr});
 }
 

@@ -102,7 +102,7 @@ void ReducedSearch::prepare() {
 }
 
 CostSharing ReducedSearch::sharing_of(Side side) const {
-  if (job_.previous != nullptr || !job_.tasks[0].need.any() || !job_.tasks[1].need.any()) {
+  if (job_.previous != nullptr || !job_.tasks[0].need.whole || !job_.tasks[1].need.whole) {
     return CostSharing::kNone;
   }
   return side == Side::kLeft ? CostSharing::kStores : CostSharing::kUses;
@@ -111,7 +111,7 @@ CostSharing ReducedSearch::sharing_of(Side side) const {
 void ReducedSearch::search(MapTask& task) {
   MatchedMap& half = *task.map;
   half.disparity_px.resize(0, 0);
-  if (!task.need.any()) {
+  if (!task.need.whole) {
     return;
   }
   if (job_.previous == nullptr) {
