@@ -3,7 +3,6 @@
 #include <array>
 
 #include "engine/matching/aggregation/stage_bayes.h"
-#include "engine/matching/aggregation/stage_box_mean.h"
 #include "engine/matching/aggregation/stage_diffusion.h"
 #include "engine/matching/aggregation/stage_max_product.h"
 #include "engine/matching/aggregation/stage_quadratic_bayes.h"

@@ -43,44 +43,64 @@ class SmoothingStage : public scheduler::RowStage {
   int count_;
 };
 
-/// A symmetric kernel along one direction.
+/// A symmetric kernel along one direction: its weights from the middle outwards, or so many equal
+/// ones, whose sum inside the image is 1.
+struct Kernel {
+  std::vector<float> weights;
+  bool is_mean = false;
+};
+
 class ConvolutionStage : public SmoothingStage {
  public:
-  ConvolutionStage(const kernels::CandidateGeometry& geometry, int height,
-                   std::vector<float> weights)
-      : SmoothingStage(geometry, height), weights_(std::move(weights)) {}
+  ConvolutionStage(const kernels::CandidateGeometry& geometry, int height, Kernel kernel)
+      : SmoothingStage(geometry, height), kernel_(std::move(kernel)) {}
 
-  /// Addresses of the runs to sum.
+  /// Addresses of the runs to sum, and the weights of a mean.
   [[nodiscard]] std::size_t state_bytes(Range /*columns*/, Extent /*input*/) const override {
-    return sizeof(const float*) * (2 * weights_.size() - 1);
+    const std::size_t weights = kernel_.weights.size();
+    return sizeof(const float*) * (2 * weights - 1) +
+           (kernel_.is_mean ? sizeof(float) * weights : 0);
   }
   [[nodiscard]] scheduler::ColumnWork column_work() const override {
     return vantage::column_work(kernels::symmetric_sum_work(radius()), count());
   }
 
  protected:
-  [[nodiscard]] int radius() const { return static_cast<int>(weights_.size()) - 1; }
+  [[nodiscard]] int radius() const { return static_cast<int>(kernel_.weights.size()) - 1; }
+  [[nodiscard]] std::string_view name_or(std::string_view name) const {
+    return kernel_.is_mean ? "box mean" : name;
+  }
 
   /// The weighted sum of the runs address(−radius) … address(radius) of `columns` columns.
   template <typename Address>
   void sum(const scheduler::RowTask& task, const Address& address, int columns,
            float* output) const {
     const auto** runs = reinterpret_cast<const float**>(task.state);
+    int inside = 0;
     for (int k = -radius(); k <= radius(); ++k) {
       runs[radius() + k] = address(k);
+      inside += runs[radius() + k] != nullptr ? 1 : 0;
     }
-    kernels::symmetric_sum({runs, weights_.data(), radius(), columns * lanes()}, output);
+    const float* weights = kernel_.weights.data();
+    if (kernel_.is_mean) {
+      auto* const equal = reinterpret_cast<float*>(runs + 2 * radius() + 1);
+      std::fill_n(equal, radius() + 1, 1.0F / static_cast<float>(inside));
+      weights = equal;
+    }
+    kernels::symmetric_sum({runs, weights, radius(), columns * lanes()}, output);
   }
 
  private:
-  std::vector<float> weights_;
+  Kernel kernel_;
 };
 
 class RowConvolutionStage final : public ConvolutionStage {
  public:
   using ConvolutionStage::ConvolutionStage;
 
-  [[nodiscard]] std::string_view name() const override { return "convolution down columns"; }
+  [[nodiscard]] std::string_view name() const override {
+    return name_or("convolution down columns");
+  }
   [[nodiscard]] Range input_rows(int y, Extent input) const override {
     return Range{y, y + 1}.widened(radius(), input.all_rows());
   }
@@ -96,7 +116,7 @@ class ColumnConvolutionStage final : public ConvolutionStage {
  public:
   using ConvolutionStage::ConvolutionStage;
 
-  [[nodiscard]] std::string_view name() const override { return "convolution along rows"; }
+  [[nodiscard]] std::string_view name() const override { return name_or("convolution along rows"); }
   [[nodiscard]] Range input_columns(Range columns, Extent input) const override {
     return columns.widened(radius(), input.all_columns());
   }
@@ -153,25 +173,31 @@ class BoxCascadeStage final : public SmoothingStage {
 };
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_convolution_stages(
-    const kernels::CandidateGeometry& geometry, int height, const std::vector<float>& weights) {
+    const kernels::CandidateGeometry& geometry, int height, const Kernel& kernel) {
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
-  stages.push_back(std::make_unique<RowConvolutionStage>(geometry, height, weights));
-  stages.push_back(std::make_unique<ColumnConvolutionStage>(geometry, height, weights));
+  stages.push_back(std::make_unique<RowConvolutionStage>(geometry, height, kernel));
+  stages.push_back(std::make_unique<ColumnConvolutionStage>(geometry, height, kernel));
   return stages;
 }
 
 }  // namespace
 
+std::vector<std::unique_ptr<scheduler::RowStage>> make_box_mean_stages(
+    const kernels::CandidateGeometry& geometry, int height, int radius) {
+  const std::vector<float> equal(static_cast<std::size_t>(radius) + 1);
+  return make_convolution_stages(geometry, height, {equal, true});
+}
+
 std::vector<std::unique_ptr<scheduler::RowStage>> make_gaussian_stages(
     const kernels::CandidateGeometry& geometry, int height, double sigma_px) {
-  return make_convolution_stages(geometry, height, gaussian_kernel(sigma_px));
+  return make_convolution_stages(geometry, height, {gaussian_kernel(sigma_px)});
 }
 
 std::vector<std::unique_ptr<scheduler::RowStage>> make_box_cascade_stages(
     const kernels::CandidateGeometry& geometry, int height, double sigma_px) {
   const std::array<int, 4> widths_px = box_cascade_widths_px(sigma_px);
   if (widths_px != kernels::BoxCascade::kWidths) {
-    return make_convolution_stages(geometry, height, box_cascade_kernel(widths_px));
+    return make_convolution_stages(geometry, height, {box_cascade_kernel(widths_px)});
   }
   std::vector<std::unique_ptr<scheduler::RowStage>> stages;
   stages.push_back(std::make_unique<BoxCascadeStage>(geometry, height));

@@ -152,8 +152,10 @@ void MatchChain::add_selection(const MethodParameters& parameters, const ChainIn
       return;
     }
     add_last(parameters, level,
-             make_fixed_energy_selection_stage(geometry_, height_, energy_selector(parameters),
-                                               level.blocks));
+             make_fixed_energy_selection_stage(
+                 geometry_, height_,
+                 {parameters.subpixel, EnergyFormat(parameters).steps_per_nat(), outputs_},
+                 level.blocks));
     return;
   }
   CellSelectionSettings settings;

@@ -84,10 +84,6 @@ CostBounds MatchChain::bounds_of(const MethodParameters& parameters, const Chain
   return bounds;
 }
 
-EnergySelector MatchChain::energy_selector(const MethodParameters& parameters) const {
-  return {parameters.subpixel, EnergyFormat(parameters).steps_per_nat(), outputs_};
-}
-
 std::vector<int> MatchChain::pass_ends(int iterations) const {
   std::vector<int> ends;
   for (int done = iterations; done < iterations_; done += iterations) {

@@ -14,7 +14,6 @@
 #include "engine/matching/levels/candidate_blocks.h"
 #include "engine/matching/levels/level_volume.h"
 #include "engine/matching/options/match_options.h"
-#include "engine/matching/selection/energy_selector.h"
 #include "engine/matching/selection/row_energies.h"
 #include "engine/matching/selection/stage_cell_selection.h"
 #include "engine/matching/volume/volume_writer.h"
@@ -138,7 +137,6 @@ bool shares_costs(const MethodParameters& parameters, const ChainInput& input,
 //  scanline selection             float, fixed, 32 bits   whole row  NaN if no candidate    map
 //  store energies                 float, fixed, 32 bits   whole row                         stored
 //  symmetric selection            same, stored row        whole row  NaN if unmatched       maps
-//  coarser selection              coarser row                        NaN if no candidate    map
 //  volume                         float, fixed                       NaN if no partner      volume
 // clang-format on
 
@@ -206,7 +204,6 @@ class MatchChain {
   void add_last(const MethodParameters& parameters, const ChainLevel& level,
                 std::unique_ptr<scheduler::RowStage> stage);
   void add_result(const MethodParameters& parameters, const ChainLevel& level);
-  [[nodiscard]] EnergySelector energy_selector(const MethodParameters& parameters) const;
 
   kernels::CandidateGeometry geometry_;
   MapOutputs outputs_;

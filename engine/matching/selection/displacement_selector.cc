@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "kernels/cell_winner/cell_winner.h"
 #include "kernels/parabola/parabola.h"
 
 namespace vantage {
@@ -68,24 +67,7 @@ void DisplacementSelector::choose(const float* cells, int count, int columns, st
   row.first_column = first_partnered_column(count);
   row.columns = columns;
   row.probabilities = settings_.cells_are_probabilities;
-  const bool is_margin = settings_.confidence == ConfidenceMeasure::kMargin;
-  kernels::select_cell_winners_row(row, {winners, best, is_margin ? confidence : nullptr});
-  if (confidence == nullptr) {
-    return;
-  }
-  switch (settings_.confidence) {
-    case ConfidenceMeasure::kEvidence:
-      std::transform(best, best + columns, confidence, [](float energy) { return -energy; });
-      break;
-    case ConfidenceMeasure::kEntropy:
-      kernels::cell_entropy_row(row, best, settings_.entropy_scale, confidence);
-      break;
-    case ConfidenceMeasure::kProbability:
-      std::copy_n(best, columns, confidence);
-      break;
-    case ConfidenceMeasure::kMargin:
-      break;
-  }
+  select_cells(settings_, row, winners, best, confidence);
 }
 
 DisplacementSelector::Values DisplacementSelector::select(const Cells& columns,

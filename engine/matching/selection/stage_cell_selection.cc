@@ -7,7 +7,6 @@
 
 #include "engine/column_work.h"
 #include "engine/error.h"
-#include "kernels/cell_winner/cell_winner.h"
 #include "kernels/parabola/parabola.h"
 
 namespace vantage {
@@ -74,33 +73,11 @@ class CellSelectionStage final : public scheduler::RowStage {
     };
     float* disparity_px = part(outputs_.disparity_px);
     float* confidence = part(outputs_.confidence);
-    const bool margin = settings_.confidence == ConfidenceMeasure::kMargin;
-    kernels::select_cell_winners_row(row,
-                                     {winners.data(), best.data(), margin ? confidence : nullptr});
+    select_cells(settings_, row, winners.data(), best.data(), confidence);
     if (settings_.subpixel == Subpixel::kParabola) {
       kernels::parabola_disparity_row(row, winners.data(), disparity_px);
     } else {
       kernels::integer_disparity_row(row, winners.data(), disparity_px);
-    }
-    if (confidence != nullptr) {
-      write_confidence(row, best.data(), confidence);
-    }
-  }
-
-  /// All measures except the margin, which comes with the winner.
-  void write_confidence(const kernels::CellRow& row, const float* best, float* confidence) const {
-    switch (settings_.confidence) {
-      case ConfidenceMeasure::kEvidence:
-        std::transform(best, best + row.columns, confidence, [](float e) { return -e; });
-        break;
-      case ConfidenceMeasure::kEntropy:
-        kernels::cell_entropy_row(row, best, settings_.entropy_scale, confidence);
-        break;
-      case ConfidenceMeasure::kProbability:
-        std::copy_n(best, row.columns, confidence);
-        break;
-      case ConfidenceMeasure::kMargin:
-        break;
     }
   }
 
@@ -110,6 +87,28 @@ class CellSelectionStage final : public scheduler::RowStage {
 };
 
 }  // namespace
+
+void select_cells(const CellSelectionSettings& settings, const kernels::CellRow& row,
+                  std::int32_t* winners, float* best, float* confidence) {
+  const bool is_margin = settings.confidence == ConfidenceMeasure::kMargin;
+  kernels::select_cell_winners_row(row, {winners, best, is_margin ? confidence : nullptr});
+  if (confidence == nullptr) {
+    return;
+  }
+  switch (settings.confidence) {
+    case ConfidenceMeasure::kEvidence:
+      std::transform(best, best + row.columns, confidence, [](float energy) { return -energy; });
+      break;
+    case ConfidenceMeasure::kEntropy:
+      kernels::cell_entropy_row(row, best, settings.entropy_scale, confidence);
+      break;
+    case ConfidenceMeasure::kProbability:
+      std::copy_n(best, row.columns, confidence);
+      break;
+    case ConfidenceMeasure::kMargin:
+      break;
+  }
+}
 
 std::unique_ptr<scheduler::RowStage> make_cell_selection_stage(
     const kernels::CandidateGeometry& geometry, const CellSelectionSettings& settings,

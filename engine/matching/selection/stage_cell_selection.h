@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "engine/image/image.h"
 #include "engine/matching/parameters/method_parameters.h"
 #include "kernels/candidates.h"
+#include "kernels/cell_winner/cell_winner.h"
 #include "scheduler/row_stage.h"
 
 namespace vantage {
@@ -35,6 +37,11 @@ struct CellSelectionSettings {
   /// Scale of kEntropy: p ∝ exp(−scale · (E − Emin)), 1/(2σM²).
   float entropy_scale = 1;
 };
+
+/// Winners of the columns of `row`, their cells and, unless `confidence` is null, how sure they
+/// are.
+void select_cells(const CellSelectionSettings& settings, const kernels::CellRow& row,
+                  std::int32_t* winners, float* best, float* confidence);
 
 /// Last stage: selects in each column the candidate with a partner whose cell is best (smallest
 /// energy, largest probability), ties going to the smallest candidate, and optionally refines it by
