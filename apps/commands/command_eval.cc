@@ -86,8 +86,7 @@ void add_eval_settings(Settings& settings, EvalJob& job) {
   settings.start_group("Cameras, for given depths");
   add_map_camera_settings(settings, job.cameras, RigUse::kDepths);
   settings.start_group("Folders");
-  settings.path("csv", job.csv, "FILE.csv",
-                "Write the table of a folder, or of the frames of --views");
+  settings.path("csv", job.csv, "FILE.csv", "Write the table of a folder");
   add_submission_settings(settings, job.submission);
 }
 
@@ -116,10 +115,7 @@ void check(const EvalJob& job, const Settings& settings) {
                                    job.first, job.second));
     }
   } else {
-    settings.refuse_idle({"submission"}, "without folders");
-    if (!job.views) {
-      settings.refuse_idle({"csv"}, "without folders");
-    }
+    settings.refuse_idle({"csv", "submission"}, "without folders");
   }
   FileChecks files(settings);
   files.add_output(job.csv, "--csv", OutputKind::kTable);
@@ -245,9 +241,6 @@ std::vector<Row> judge_views(const EvalJob& job, Execution& execution, RunReport
                       compared.flicker.masked_mean_levels().value_or(std::nan("")), kLevels});
     }
     frames = compared.frames;
-    if (!job.csv.empty()) {
-      write_text_file(job.csv, score_csv(frames));
-    }
   }
   return rows;
 }

@@ -101,7 +101,7 @@ ViewComparison compare_views(const std::string& views, const std::string& truth,
     SettingValue row = {{"frames", pairs->describe(pair.index)}, {"pixels", 0}};
     if (!counted || has_white(*counted)) {
       const ViewScores scores = evaluate_view(pair.left, pair.right, execution, chosen);
-      const double immersive_db = immersive_psnr_db(pair.left, pair.right, execution, chosen);
+      const double immersive_db = immersive_psnr_db(pair.left, pair.right, chosen);
       add_scores(scores, immersive_db, all);
       row["pixels"] = scores.pixels;
       row["psnr_db"] = scores.psnr_db;

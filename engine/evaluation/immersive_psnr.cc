@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <vector>
@@ -70,48 +71,33 @@ Components best_squares(const Image<float>& from, const Image<float>& to, const 
   return best;
 }
 
-/// The pixels that count.
-class CountedPixels {
- public:
-  CountedPixels(const Image<float>& picture, std::optional<ImageView<const std::uint8_t>> mask,
-                Execution& execution)
-      : width_(picture.width()), height_(picture.height()), mask_(mask), execution_(execution) {}
-
-  /// Mean of `value`, added up in the order of the rows.
-  template <typename Value>
-  [[nodiscard]] Components mean_of(const Value& value) const {
-    std::vector<std::array<double, 4>> rows(static_cast<std::size_t>(height_));
-    execution_.for_each_row(height_, [&](int y) {
-      for (int x = 0; x < width_; ++x) {
-        if (!mask_ || mask_->row(y)[x] == 255) {
-          const Components values = value(x, y);
-          std::transform(values.begin(), values.end(), rows[y].begin(), rows[y].begin(),
-                         std::plus());
-          ++rows[y][3];
-        }
+/// Mean of `value` over the pixels of `mask`.
+template <typename Value>
+Components mean_of(const Image<float>& picture, std::optional<ImageView<const std::uint8_t>> mask,
+                   const Value& value) {
+  Components sum{};
+  std::int64_t pixels = 0;
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      if (!mask || mask->row(y)[x] == 255) {
+        const Components values = value(x, y);
+        std::transform(sum.begin(), sum.end(), values.begin(), sum.begin(), std::plus());
+        ++pixels;
       }
-    });
-    std::array<double, 4> sum{};
-    for (const auto& row : rows) {
-      std::transform(row.begin(), row.end(), sum.begin(), sum.begin(), std::plus());
     }
-    if (sum[3] == 0) {
-      throw Error(
-          "no pixels to compare, expected pictures with pixels and a mask that is not empty");
-    }
-    return {sum[0] / sum[3], sum[1] / sum[3], sum[2] / sum[3]};
   }
-
- private:
-  int width_;
-  int height_;
-  std::optional<ImageView<const std::uint8_t>> mask_;
-  Execution& execution_;
-};
+  if (pixels == 0) {
+    throw Error("no pixels to compare, expected pictures with pixels and a mask that is not empty");
+  }
+  for (double& component : sum) {
+    component /= static_cast<double>(pixels);
+  }
+  return sum;
+}
 
 }  // namespace
 
-double immersive_psnr_db(const Photograph& view, const Photograph& truth, Execution& execution,
+double immersive_psnr_db(const Photograph& view, const Photograph& truth,
                          std::optional<ImageView<const std::uint8_t>> mask) {
   require_equal_size("the view", view.width(), view.height(), truth);
   if (mask) {
@@ -119,8 +105,7 @@ double immersive_psnr_db(const Photograph& view, const Photograph& truth, Execut
   }
   const int channels = compared_channels(view, truth);
   const Image<float> pictures[] = {components_of(view, channels), components_of(truth, channels)};
-  const CountedPixels counted(pictures[0], mask, execution);
-  Components offset = counted.mean_of([&](int x, int y) {
+  Components offset = mean_of(pictures[0], mask, [&](int x, int y) {
     Components difference{};
     for (int c = 0; c < channels; ++c) {
       difference[c] = pictures[1].at(x, y, c) - pictures[0].at(x, y, c);
@@ -132,7 +117,7 @@ double immersive_psnr_db(const Photograph& view, const Photograph& truth, Execut
   }
   double worse_db = std::numeric_limits<double>::infinity();
   for (const int from : {0, 1}) {
-    const Components squares = counted.mean_of([&](int x, int y) {
+    const Components squares = mean_of(pictures[0], mask, [&](int x, int y) {
       return best_squares(pictures[from], pictures[1 - from], offset, x, y);
     });
     double sum = 0;

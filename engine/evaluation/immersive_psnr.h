@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/execution.h"
 #include "engine/image/image.h"
 #include "engine/image/photograph.h"
 
@@ -23,9 +22,8 @@ namespace vantage {
 /// for immersive video applications. IEEE TCSVT 32(11), 2022; constants: defaults of MPEG's
 /// software.
 ///
-/// Errors: Error when sizes differ or no pixel counts. Thread rule: pure; identical for any
-/// ExecutionOptions.
-double immersive_psnr_db(const Photograph& view, const Photograph& truth, Execution& execution,
+/// Errors: Error when sizes differ or no pixel counts. Thread rule: pure.
+double immersive_psnr_db(const Photograph& view, const Photograph& truth,
                          std::optional<ImageView<const std::uint8_t>> mask = {});
 
 }  // namespace vantage
