@@ -40,6 +40,7 @@
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/rows/row_check.h"
 #include "engine/rectification/rows/row_correction.h"
+#include "engine/rectification/rows/row_remarks.h"
 #include "engine/rectification/stereo_calibration.h"
 #include "engine/rectification/uncalibrated_rig.h"
 #include "engine/rectification/vertical_error.h"

@@ -22,6 +22,7 @@ MatchResult::MatchResult(const PairMatcher& matcher, Execution& execution, Match
       spare_(std::move(spare)) {
   computed_.maps = spare_->take();
   computed_.options = matcher.options();
+  computed_.rows = matcher.rows();
   computed_.on_photographs = unrectified_ && !unrectified_->on_rectified();
   if (wanted.other && !images_.is_pair()) {
     throw UsageError("right_disparity cannot be had of several images: the first one has a map");
@@ -67,7 +68,7 @@ void MatchResult::require(Wanted wanted, const char* asked_for) {
         "posterior cannot be used with unrectified: candidates differ by fractions from pixel to "
         "pixel");
   }
-  const PairMatcher matcher(computed_.options, execution_);
+  const PairMatcher matcher(computed_.options, execution_, computed_.rows);
   ComputedMaps rest;
   on_threads_of(execution_, [&] {
     match(matcher, images_.read_again(asked_for), computed_.has.with(wanted), rest);
@@ -124,6 +125,14 @@ py::object MatchResult::disparity_y(const py::object& self) const {
 py::array_t<float> MatchResult::right_disparity(const py::object& self) {
   require_right("right_disparity");
   return array_over(computed_.maps.right.disparity_px, self);
+}
+
+std::vector<std::string> MatchResult::remarks() const {
+  std::vector<std::string> texts;
+  for (const Remark& remark : computed_.report.remarks) {
+    texts.push_back(remark.text);
+  }
+  return texts;
 }
 
 py::array_t<bool> MatchResult::unmatched() const { return array_of(map().unmatched.view()); }
@@ -307,6 +316,8 @@ void bind_match_result(py::module_& module) {
                              "bool: the same of the right map.")
       .def_property_readonly("disparities", &MatchResult::disparities,
                              "(MIN, MAX): the range that was searched, ends included.")
+      .def_property_readonly("remarks", &MatchResult::remarks,
+                             "list of texts: what was found, assumed and corrected.")
       .def_property_readonly(
           "matched_share", [](const MatchResult& self) { return self.shares().matched; },
           "float: share of the pixels that were matched; the others are filled or unknown.")

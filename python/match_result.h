@@ -40,7 +40,8 @@ struct PosteriorMaps {
 
 /// Maps of images.
 struct ComputedMaps {
-  MatchOptions options;  ///< with the range that was searched
+  MatchOptions options;           ///< with the range that was searched
+  RowMode rows = RowMode::kAsIs;  ///< of what else is computed of the images
   DisparityMaps maps;
   Wanted has;
   MatchReport report = {};
@@ -98,6 +99,7 @@ class MatchResult {
                   const pybind11::dict& keywords);
   /// Of the match that made the map of the reference.
   [[nodiscard]] const MatchReport& report() const { return computed_.report; }
+  [[nodiscard]] std::vector<std::string> remarks() const;
   [[nodiscard]] MapShares shares() const { return computed_.report.shares.value_or(MapShares()); }
   [[nodiscard]] std::pair<int, int> disparities() const {
     return {computed_.options.disparities.min, computed_.options.disparities.max};

@@ -21,6 +21,7 @@ MatchSetup match_setup(py::dict keywords) {
   add_reference_setting(settings, setup.options.reference);
   add_match_settings(settings, setup.options);
   add_white_level_setting(settings, setup.white_level);
+  add_rows_setting(settings, setup.rows);
   set_options(settings, keywords);
   return setup;
 }
@@ -47,7 +48,7 @@ MatchedImages ImageArguments::images(std::optional<double> white_level) const {
 
 Matcher::Matcher(const std::optional<StereoCalibration>& unrectified, bool on_rectified,
                  const py::dict& keywords)
-    : setup_(match_setup(keywords)), matcher_(setup_.options, *setup_.execution) {
+    : setup_(match_setup(keywords)), matcher_(setup_.options, *setup_.execution, setup_.rows) {
   if (unrectified) {
     UnrectifiedMatcher::validate(setup_.options);
     unrectified_ =
@@ -112,6 +113,7 @@ py::dict Matcher::options() {
   add_reference_setting(settings, setup_.options.reference);
   add_match_settings(settings, setup_.options);
   add_white_level_setting(settings, setup_.white_level);
+  add_rows_setting(settings, setup_.rows);
   const SettingValue values = settings.values();
   py::dict result;
   for (const auto& [name, value] : values.items()) {

@@ -19,6 +19,7 @@ namespace vantage::python {
 struct MatchSetup {
   MatchOptions options = options_with_found_range();
   std::optional<double> white_level;  ///< see WhiteLevelSearch
+  RowMode rows = RowMode::kAuto;
   Execution* execution = nullptr;
 };
 

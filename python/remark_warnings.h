@@ -10,14 +10,13 @@
 
 namespace vantage::python {
 
-/// Warns (warnings.warn) of the warnings among remarks, once of each subject. Thread rule: with the
-/// GIL.
+/// Warns (warnings.warn) of remarks, once of each subject. Thread rule: with the GIL.
 class RemarkWarnings {
  public:
   /// Of the line that called the function of the package. Throws where warnings are errors.
   void warn(std::span<const Remark> remarks) {
     for (const Remark& remark : remarks) {
-      if (remark.is_warning() && told_.emplace(remark.subject).second &&
+      if (told_.emplace(remark.subject).second &&
           PyErr_WarnEx(PyExc_UserWarning, remark.text.c_str(), 2) != 0) {
         throw pybind11::error_already_set();
       }

@@ -211,7 +211,7 @@ class FrameLoop {
         .report = slot.match,
         .preview = frame.preview,
         .is_final = options.temporal.uses_past() || !options.baselines.empty() ||
-                    options.unrectified != UnrectifiedSearch::kNone,
+                    options.unrectified != UnrectifiedSearch::kNone || slot.rows.has_value(),
         .on_photographs = options.unrectified == UnrectifiedSearch::kOnPhotographs};
     computed.options.disparities = frame.searched;
     if (options.saves_posterior()) {

@@ -2,6 +2,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -27,6 +29,7 @@ struct ViewSetup {
   RectificationOptions rectification;
   MatchOptions match = options_with_found_range();
   std::optional<double> white_level;
+  RowMode rows = RowMode::kAuto;
 };
 
 void rectify_pair(const StereoCalibration& calibration, const RectificationOptions& options,
@@ -39,6 +42,21 @@ void rectify_pair(const StereoCalibration& calibration, const RectificationOptio
     read.rectifier.apply(read.left, Side::kLeft, pair.left, execution);
     read.rectifier.apply(read.right, Side::kRight, pair.right, execution);
   }
+}
+
+/// Rows as `vantage synth` corrects them. Views are of the corrected right image.
+void correct_pair(const MatchOptions& options, Execution& execution, PairWithMaps& pair,
+                  std::vector<Remark>& remarks) {
+  const RowCheck check = check_rows(pair.left, pair.right, &execution);
+  if (check.pays()) {
+    Photograph corrected;
+    correct_rows(pair.right, check.rows->field, corrected, execution);
+    pair.right = std::move(corrected);
+    follow_corrected_rows(check.rows->field, execution, pair);
+  }
+  std::ranges::move(row_remarks(check, {.is_corrected = check.pays(),
+                                        .expects_negative = expects_negative_disparities(options)}),
+                    std::back_inserter(remarks));
 }
 
 void require_size(const DisparityMap& map, const Photograph& image, const char* name) {
@@ -80,6 +98,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
   settings.number("kept-outline", setup.rectification.kept_outline, "SHARE", "");
   add_match_settings(settings, setup.match);
   add_white_level_setting(settings, setup.white_level);
+  add_rows_setting(settings, setup.rows);
   set_options(settings, keywords);
   setup.synthesis.validate();
   setup.rectification.validate();
@@ -92,7 +111,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
   const PixelArray right_pixels(right, order, "right");
   PairWithMaps pair;
   Photograph* const both[] = {&pair.left, &pair.right};
-  std::vector<Remark> scaled;
+  std::vector<Remark> found;
   if (!left_map.is_none()) {
     pair.maps.left.disparity_px = map_from(left_map, "disparity");
     pair.maps.right.disparity_px = map_from(right_map, "right_disparity");
@@ -103,19 +122,24 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
     pair.left = left_pixels.copy();
     pair.right = right_pixels.copy();
     require_equal_shapes(pair.left, pair.right);
-    scaled = scale_to_white_level(both, setup.white_level);
+    found = scale_to_white_level(both, setup.white_level);
     if (calibration) {
       rectify_pair(*calibration, setup.rectification, pair, execution);
     }
-    if (pair.maps.left.disparity_px.empty()) {
-      PairMatcher(setup.match, execution).match(pair.left, pair.right, {}, pair.maps, &report);
-    } else {
+    if (!pair.maps.left.disparity_px.empty()) {
       require_size(pair.maps.left.disparity_px, pair.left, "disparity");
       require_size(pair.maps.right.disparity_px, pair.right, "right_disparity");
     }
+    if (setup.rows == RowMode::kAuto) {
+      correct_pair(setup.match, execution, pair, found);
+    }
+    if (pair.maps.left.disparity_px.empty()) {
+      PairMatcher(setup.match, execution, RowMode::kAsIs)
+          .match(pair.left, pair.right, {}, pair.maps, &report);
+    }
     return render(setup, poses, pair, execution);
   });
-  RemarkWarnings().warn(scaled);
+  RemarkWarnings().warn(found);
   RemarkWarnings().warn(report.remarks);
   py::list arrays;
   for (Photograph& image : images) {

@@ -14,6 +14,7 @@
 #include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/images/stereo_jpeg.h"
+#include "engine/matching/pair_matcher.h"
 #include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/pair_source_settings.h"
@@ -164,19 +165,12 @@ PairWithMaps read_pair(PairInput& pair, const Settings& settings, const CommonOp
     tell_remarks(remarks, common, report);
   }
   if (pair.rows.check) {
-    const auto rows = correct_rows({.settings = settings,
-                                    .common = common,
+    const auto rows = correct_rows({.common = common,
                                     .mode = pair.rows.mode,
                                     .expects_negative = expects_negative_disparities(pair.match)},
                                    result.left, result.right, execution, report);
-    if (rows && result.unrectified) {
-      UnrectifiedImages& read = *result.unrectified;
-      Photograph corrected;
-      correct_photograph(read.right, rows->field, read.rectifier, corrected, execution);
-      read.right = std::move(corrected);
-    }
-    if (rows && pair.has_maps()) {
-      bring_to_corrected_rows(rows->field, result.maps.right, execution);
+    if (rows) {
+      follow_corrected_rows(rows->field, execution, result);
     }
   }
   if (!pair.has_maps()) {

@@ -1,14 +1,13 @@
 #include "apps/inputs/rectification_check.h"
 
-#include <fmt/format.h>
-
 #include <chrono>
-#include <cmath>
 #include <utility>
+#include <vector>
 
-#include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/vertical_error_report.h"
-#include "engine/rectification/rows/row_check.h"
+#include "engine/options/match_settings.h"
+#include "engine/rectification/rows/row_remarks.h"
 #include "engine/seconds_since.h"
 #include "scheduler/trace.h"
 
@@ -24,47 +23,19 @@ RowCheck timed_check(const Photograph& left, const Photograph& right, Execution&
   return check;
 }
 
-std::string what_to_do(const RowTask& task, const RowCheck& check) {
-  if (check.pays()) {
-    return "; leave out --rows as-is to correct them";
-  }
-  return fmt::format("; that is more than --rows auto corrects{}",
-                     task.lines == "rows" ? ", see 'vantage rectify'" : "");
-}
-
-void tell_of(const RowTask& task, const RowCheck& check, bool is_corrected, RunReport& report) {
-  if (!check.error) {
-    return;
-  }
-  const VerticalError& error = *check.error;
-  const bool corresponds = is_corrected || (check.rows && !check.pays()) || is_rectified(error);
-  const bool looks_exchanged = error.looks_exchanged() && !task.expects_negative;
-  SettingValue values = vertical_error_values(error);
-  values["is_rectified"] = corresponds;
-  values["looks_exchanged"] = looks_exchanged;
-  report.add_result("rectification", std::move(values));
-  if (task.common.quiet) {
-    return;
-  }
-  const std::string& command = task.settings.command();
-  if (!corresponds) {
-    tell("{}: warning: the pair is not rectified: {}; {}{}\n", command,
-         cost_text(error, task.lines), vertical_error_text(error), what_to_do(task, check));
-  }
-  if (looks_exchanged) {
-    tell("{}: warning: {}\n", command, exchanged_text(error, task.lines));
+void report_error(const RowCheck& check, const RowUse& use, RunReport& report) {
+  if (check.error) {
+    SettingValue values = vertical_error_values(*check.error);
+    values["is_rectified"] = rows_correspond(check, use);
+    values["looks_exchanged"] = looks_exchanged(check, use);
+    report.add_result("rectification", std::move(values));
   }
 }
 
 }  // namespace
 
-bool expects_negative_disparities(const MatchOptions& options) {
-  return !options.disparities_auto && -options.disparities.min > options.disparities.max;
-}
-
 void add_row_settings(Settings& settings, RowSettings& rows) {
-  settings.choice<RowMode>("rows", rows.mode, {{"auto", RowMode::kAuto}, {"as-is", RowMode::kAsIs}},
-                           kRowsHelp);
+  add_rows_setting(settings, rows.mode);
   add_rectification_check_setting(
       settings, rows.check,
       "Do not look at the rows: correct nothing, and do not warn of pairs that are not rectified "
@@ -100,13 +71,16 @@ std::optional<CorrectedRows> correct_rows(const RowTask& task, const Photograph&
   if (check.rows && !task.is_of_sequence) {
     report.add_result("rows", row_values(*check.rows, corrects));
   }
-  tell_of(task, check, corrects, report);
+  const RowUse use{
+      .is_corrected = corrects, .expects_negative = task.expects_negative, .lines = task.lines};
+  report_error(check, use, report);
+  std::vector<Remark> remarks = row_remarks(check, use);
+  if (task.is_of_sequence) {  // which says itself what it corrects
+    std::erase_if(remarks, [](const Remark& remark) { return !remark.is_warning(); });
+  }
+  tell_remarks(remarks, task.common, report);
   if (!corrects || task.is_of_sequence) {
     return std::nullopt;
-  }
-  if (!task.common.quiet) {
-    tell("{}: {}: {}; corrected, points agree to {:.2f} px\n", task.settings.command(), task.lines,
-         row_text(*check.rows, task.lines), check.rows->residual_px);
   }
   CorrectedRows result{.field = check.rows->field, .given = {}};
   report.timed_compute("rows", [&] {

@@ -23,13 +23,8 @@ void add_row_settings(Settings& settings, RowSettings& rows);
 /// --no-rectification-check alone, with its help text.
 void add_rectification_check_setting(Settings& settings, bool& wanted, const char* text);
 
-/// Whether the user chose a range whose disparities are mostly negative. Call it before
-/// choose_disparities(), which replaces an automatic range.
-bool expects_negative_disparities(const MatchOptions& options);
-
 /// How rows are looked at, and what is told.
 struct RowTask {
-  const Settings& settings;
   const CommonOptions& common;
   RowMode mode = RowMode::kAuto;
   bool expects_negative = false;    ///< images are not exchanged where most disparities are

@@ -26,6 +26,7 @@
 #include "engine/image/white_level.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/matching/options/method_names.h"
+#include "engine/matching/pair_matcher.h"
 #include "engine/matching/search/epipolar/rectified_map.h"
 #include "engine/matching/selection/cyclopean_map.h"
 #include "engine/matching/stereo_matcher.h"
@@ -115,16 +116,14 @@ struct MatchInputs {
   }
 
   /// Corrects the right image where that is wanted; its maps are then on corrected rows.
-  void correct(const MatchJob& job, const Settings& settings, Execution& execution,
-               RunReport& report) {
+  void correct(const MatchJob& job, Execution& execution, RunReport& report) {
     if (!job.rows.check || job.match.disparities_y || job.match.disparities_y_auto || rectifier) {
       return;
     }
     // Volumes and what is made of them are not brought back.
     const bool can_correct = !job.has_several() &&
                              (job.is_left() || (job.volume.file.empty() && !job.wants_posterior()));
-    rows = correct_rows({.settings = settings,
-                         .common = job.common,
+    rows = correct_rows({.common = job.common,
                          .mode = can_correct ? job.rows.mode : RowMode::kAsIs,
                          .expects_negative = expects_negative_disparities(job.match),
                          .lines = job.vertical ? "columns" : "rows"},
@@ -312,7 +311,7 @@ int run_match(MatchJob& job, const Settings& settings) {
   RunReport& report = work.report;
 
   MatchInputs inputs(job, work.execution, report);
-  inputs.correct(job, settings, work.execution, report);
+  inputs.correct(job, work.execution, report);
   const MatchOptions asked = job.match;
   choose_disparities(settings, job.common, inputs.left(), inputs.right(), job.match, work.execution,
                      report);

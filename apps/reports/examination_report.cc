@@ -7,6 +7,7 @@
 #include "apps/reports/remarks.h"
 #include "apps/reports/vertical_error_report.h"
 #include "engine/options/match_settings.h"
+#include "engine/rectification/rows/row_remarks.h"
 
 namespace vantage::apps {
 namespace {

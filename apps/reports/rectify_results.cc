@@ -7,6 +7,7 @@
 #include "apps/process/tell.h"
 #include "apps/reports/vertical_error_report.h"
 #include "engine/options/matrix_rows.h"
+#include "engine/rectification/rows/row_remarks.h"
 #include "engine/rectification/vertical_error.h"
 
 namespace vantage::apps {

@@ -21,6 +21,7 @@
 #include "engine/io/files/json_text.h"
 #include "engine/io/video/stated_format.h"
 #include "engine/jobs/list_columns.h"
+#include "engine/matching/pair_matcher.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/options/frame_step_setting.h"
 #include "engine/sequence/journal/delivered_frames.h"
@@ -153,14 +154,13 @@ std::string counted_frames(const RunJob& job, int frame_count) {
 }
 
 /// Warns of the first pair, finds out how rows are corrected, and tells.
-void choose_rows(RunJob& job, const Settings& settings, FramePair& first, Execution& execution,
-                 RunSession& session, RunReport& report) {
+void choose_rows(RunJob& job, FramePair& first, Execution& execution, RunSession& session,
+                 RunReport& report) {
   take_up_rows(job);
   if (!job.check_rectification) {
     job.rows = RowMode::kAsIs;
   } else if (job.unrectified.empty()) {
-    correct_rows({.settings = settings,
-                  .common = job.common,
+    correct_rows({.common = job.common,
                   .mode = job.sequence.baselines.empty() ? job.rows : RowMode::kAsIs,
                   .expects_negative = expects_negative_disparities(job.sequence.match),
                   .is_of_sequence = true},
@@ -273,7 +273,7 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
   if (session.shape.cameras) {
     tell_remarks(session.shape.cameras->remarks, job.common, report);
   }
-  choose_rows(job, settings, first, execution, session, report);
+  choose_rows(job, first, execution, session, report);
   const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
   const auto find_range = [&] {
     // Estimating the range of a video without an index decodes the whole video.

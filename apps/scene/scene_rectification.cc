@@ -9,6 +9,8 @@
 #include "apps/inputs/rectification_check.h"
 #include "apps/process/tell.h"
 #include "apps/reports/vertical_error_report.h"
+#include "engine/matching/pair_matcher.h"
+#include "engine/rectification/rows/row_remarks.h"
 #include "engine/rectification/vertical_error.h"
 #include "engine/scene_graph/rectified_edge.h"
 

@@ -30,8 +30,8 @@ void try_match(const Photograph& left, const Photograph& right, MatchOptions opt
   const auto start = std::chrono::steady_clock::now();
   DisparityMaps maps;
   MatchReport report;
-  const MatchOptions used =
-      PairMatcher(options, execution).match(left, right, {.left = true}, maps, &report);
+  const MatchOptions used = PairMatcher(options, execution, RowMode::kAsIs)
+                                .match(left, right, {.left = true}, maps, &report);
   examination.seconds = seconds_since(start) / std::pow(options.scale, 3);
   examination.disparities = used.disparities;
   examination.remarks = std::move(report.remarks);

@@ -101,8 +101,7 @@ SettingValue output_names(const std::vector<SequenceOutput>& outputs) {
 }
 
 void add_sequence_rows_setting(Settings& settings, SequenceJob& job) {
-  Setting& rows = settings.choice<RowMode>(
-      "rows", job.rows, {{"auto", RowMode::kAuto}, {"as-is", RowMode::kAsIs}}, kRowsHelp);
+  Setting& rows = add_rows_setting(settings, job.rows);
   rows.set = [&job, set_mode = rows.set](const SettingValue& value) {
     job.sequence.rows.keys.clear();
     if (!value.is_array()) {

@@ -1,11 +1,14 @@
 #include "engine/matching/pair_matcher.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "engine/matching/range_check.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/matching/search/match_inputs.h"
 #include "engine/matching/vertical_range.h"
+#include "engine/rectification/rows/row_remarks.h"
 
 namespace vantage {
 
@@ -27,14 +30,53 @@ MatchOptions with_found_ranges(MatchOptions options, const Photograph& left,
   return options;
 }
 
-PairMatcher::PairMatcher(const MatchOptions& options, Execution& execution)
-    : options_(options), execution_(execution) {
+bool expects_negative_disparities(const MatchOptions& options) {
+  return !options.disparities_auto && -options.disparities.min > options.disparities.max;
+}
+
+PairMatcher::PairMatcher(const MatchOptions& options, Execution& execution, RowMode rows)
+    : options_(options), execution_(execution), rows_(rows) {
   options_.validate();
+}
+
+bool PairMatcher::may_correct_rows(const Photograph& left, const Photograph& right,
+                                   const MatchRequest& request) const {
+  const bool has_right_volumes =
+      std::ranges::any_of(request.volumes, [](const VolumeRequest& volume) {
+        return volume.side == Side::kRight;
+      });  // which are not brought back
+  return rows_ == RowMode::kAuto && !options_.disparities_y && !options_.disparities_y_auto &&
+         !has_right_volumes && request.prior.empty() && request.previous == nullptr &&
+         left.width() == right.width() && left.height() == right.height();
 }
 
 MatchOptions PairMatcher::match(const Photograph& left, const Photograph& right,
                                 const MatchRequest& request, DisparityMaps& maps,
                                 MatchReport* report) const {
+  if (!may_correct_rows(left, right, request)) {
+    return match_rows(left, right, request, maps, report);
+  }
+  const RowCheck check = check_rows(left, right, &execution_);
+  Photograph corrected;
+  if (check.pays()) {
+    correct_rows(right, check.rows->field, corrected, execution_);
+  }
+  MatchOptions used = match_rows(left, check.pays() ? corrected : right, request, maps, report);
+  if (check.pays()) {
+    bring_to_given_rows(check.rows->field, maps.right, execution_);
+  }
+  if (report != nullptr) {
+    std::ranges::move(
+        row_remarks(check, {.is_corrected = check.pays(),
+                            .expects_negative = expects_negative_disparities(options_)}),
+        std::back_inserter(report->remarks));
+  }
+  return used;
+}
+
+MatchOptions PairMatcher::match_rows(const Photograph& left, const Photograph& right,
+                                     const MatchRequest& request, DisparityMaps& maps,
+                                     MatchReport* report) const {
   const auto ready = ready_for(with_found_ranges(options_, left, right, execution_));
   ready->matcher.match(left, right, request, maps, report);
   if (report != nullptr) {

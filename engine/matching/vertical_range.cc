@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMaxFeatures = 1000;
 constexpr int kLargestSide_px = 640;
-constexpr int kMinMatches = 20;
+constexpr int kMinVerticalMatches = 20;
 
 // Shares of the matches. A few per cent are wrong, each by a different number of rows.
 constexpr double kStrayMatches = 0.02;
@@ -72,7 +72,7 @@ std::optional<DisparityRange> find_vertical_range(const Photograph& left, const 
                                                          {.kind = FeatureKind::kOrb,
                                                           .max_features = kMaxFeatures,
                                                           .largest_side_px = kLargestSide_px});
-  if (static_cast<int>(matches.size()) < kMinMatches) {
+  if (static_cast<int>(matches.size()) < kMinVerticalMatches) {
     return std::nullopt;
   }
   std::vector<double> columns;

@@ -168,6 +168,13 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
   settings.show_resolved([&options] { return resolved_parameters(options); });
 }
 
+Setting& add_rows_setting(Settings& settings, RowMode& rows) {
+  return settings.choice<RowMode>(
+      "rows", rows, {{"auto", RowMode::kAuto}, {"as-is", RowMode::kAsIs}},
+      "Rows that do not correspond. auto: where pairs themselves show a smooth offset of up to a "
+      "few pixels, right images are resampled, and their maps are brought back to their pixels");
+}
+
 void add_baselines_setting(Settings& settings, std::vector<double>& baselines, std::string help) {
   Setting& setting = settings.add("baselines", "B1,B2,...", std::move(help));
   setting.set = [&baselines](const SettingValue& value) {

@@ -5,6 +5,7 @@
 
 #include "engine/matching/options/match_options.h"
 #include "engine/options/settings.h"
+#include "engine/rectification/rows/row_correction.h"
 
 namespace vantage {
 
@@ -21,6 +22,8 @@ void add_match_settings(Settings& settings, MatchOptions& options);
 void add_baselines_setting(Settings& settings, std::vector<double>& baselines, std::string help);
 /// Throws UsageError unless there is one number for each of `others` images.
 void check_baselines(const std::vector<double>& baselines, std::size_t others);
+/// --rows, in the present group.
+Setting& add_rows_setting(Settings& settings, RowMode& rows);
 void add_reference_setting(Settings& settings, Side& reference);
 
 /// Settings for the report: the values of `settings` and, under `resolved`, those of

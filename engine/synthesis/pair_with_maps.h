@@ -2,10 +2,12 @@
 
 #include <optional>
 
+#include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
 #include "engine/image/photograph.h"
 #include "engine/rectification/rectified_pair.h"
 #include "engine/rectification/rectifier.h"
+#include "engine/rectification/rows/row_field.h"
 
 namespace vantage {
 
@@ -24,5 +26,9 @@ struct PairWithMaps {
   Photograph right;
   DisparityMaps maps;
 };
+
+/// Brings what belongs to `right`, whose rows have been corrected, to its new rows: the photograph
+/// as it was read, and the maps where there are some. Identical for any execution.
+void follow_corrected_rows(const RowField& field, Execution& execution, PairWithMaps& pair);
 
 }  // namespace vantage

@@ -68,6 +68,38 @@ def test_near_the_truth(pair, truth):
     assert 0 <= vantage.Matcher().compute(*pair).disparities[0] <= 2
 
 
+def lower(image, rows):
+    height, width = image.shape[:2]
+    return cv2.warpAffine(image, np.float32([[1, 0, 0], [0, 1, rows]]), (width, height),
+                          flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+
+
+def test_rows_that_are_off_are_corrected_with_a_warning(pair):
+    left, right = pair
+    moved = lower(right, 1.5)
+    with pytest.warns(UserWarning, match="rows: right image 1.* px lower.*; corrected"):
+        result = vantage.Matcher("realtime", (0, 15)).compute(left, moved)
+    assert any("corrected" in text for text in result.remarks)
+    level = vantage.Matcher("realtime", (0, 15)).compute(left, right)
+    inner = np.s_[6:-6, 20:-6]
+    as_is = vantage.Matcher("realtime", (0, 15), rows="as-is").compute(left, moved)
+
+    def off(given, expected):
+        return np.mean(np.abs(given[inner] - expected[inner]) > 0.5)
+
+    assert off(result.disparity, level.disparity) < 0.06
+    assert off(result.disparity, level.disparity) < off(as_is.disparity, level.disparity) / 2
+    # Asked for later, on the pixels of the given image.
+    given_rows = lower(level.right_disparity, 1.5)
+    assert off(result.right_disparity, given_rows) < off(as_is.right_disparity, given_rows) / 2
+    with pytest.warns(UserWarning, match="rows: .*; corrected"):
+        view = vantage.synthesize(left, moved, 0.5, preset="realtime", disparities=(0, 15))
+    true = vantage.synthesize(left, right, 0.5, preset="realtime", disparities=(0, 15))
+    wrong = vantage.synthesize(left, moved, 0.5, preset="realtime", disparities=(0, 15),
+                               rows="as-is")
+    assert cv2.PSNR(view[8:-8], true[8:-8]) > cv2.PSNR(wrong[8:-8], true[8:-8]) + 3
+
+
 def test_a_map_that_measures_nothing_warns_once(pair):
     black = np.zeros((60, 80), np.uint8)
     matcher = vantage.Matcher(disparities=(0, 15))

@@ -2,6 +2,8 @@
 
 #include "engine/rectification/rows/row_field.h"
 
+#include "engine/matching/pair_matcher.h"
+#include "engine/matching/volume/posterior_moments.h"
 #include "engine/rectification/rows/row_check.h"
 #include "engine/rectification/rows/row_correction.h"
 #include "engine/rectification/rows/row_points.h"
@@ -181,6 +183,56 @@ TEST(RowCorrection, MapsComeBackToTheirPixels) {
   EXPECT_TRUE(map.confidence.empty());
   bring_to_corrected_rows(field, map, execution);
   EXPECT_EQ(map.disparity_px.at(3, 5), 5);
+}
+
+/// Largest error of a map of the plane, columns and rows near the border left out.
+double worst_error_px(const DisparityMap& map_px, double disparity_px) {
+  double worst = 0;
+  for (const auto [x, y] : positions_of({20, kWidth - 20}, {8, kHeight - 8})) {
+    worst = std::max(worst, std::abs(map_px.at(x, y) - disparity_px));
+  }
+  return worst;
+}
+
+TEST(PairMatcher, CorrectsRowsAndBringsRightMapsBack) {
+  const Photograph left = picture<std::uint8_t>(0, 0, 0, 1);
+  const Photograph right = picture<std::uint8_t>(9, 2.6, 0, 1);
+  MatchOptions options;
+  options.disparities = {0, 15};
+  options.preset = MatchPreset::kRealtime;
+  Execution execution({.threads = 2});
+  DisparityMaps corrected;
+  MatchReport report;
+  PairMatcher(options, execution).match(left, right, {}, corrected, &report);
+  EXPECT_LT(worst_error_px(corrected.left.disparity_px, 9), 0.3);
+  EXPECT_LT(worst_error_px(corrected.right.disparity_px, 9), 0.3);
+  ASSERT_FALSE(report.remarks.empty());
+  EXPECT_THAT(report.remarks.back().text, HasSubstr("px lower; corrected"));
+
+  // By hand.
+  const RowCheck check = check_rows(left, right, &execution);
+  Photograph resampled;
+  correct_rows(right, check.rows->field, resampled, execution);
+  DisparityMaps expected;
+  StereoMatcher(options, execution).match(left, resampled, {}, expected);
+  bring_to_given_rows(check.rows->field, expected.right, execution);
+  EXPECT_TRUE(identical(corrected.left.disparity_px, expected.left.disparity_px));
+  EXPECT_TRUE(identical(corrected.right.disparity_px, expected.right.disparity_px));
+  EXPECT_TRUE(identical(corrected.right.unmatched, expected.right.unmatched));
+
+  DisparityMaps as_given;
+  MatchReport of_given;
+  const PairMatcher as_is(options, execution, RowMode::kAsIs);
+  as_is.match(left, right, {}, as_given, &of_given);
+  StereoMatcher(options, execution).match(left, right, {}, expected);
+  EXPECT_TRUE(identical(as_given.left.disparity_px, expected.left.disparity_px));
+  EXPECT_THAT(of_given.remarks, Not(Contains(Field(&Remark::subject, "rows"))));
+
+  // Volumes of the right image are not brought back, so its rows stay.
+  PosteriorMoments moments;
+  const VolumeRequest volume{.side = Side::kRight, .sink = &moments};
+  PairMatcher(options, execution).match(left, right, {.volumes = {&volume, 1}}, corrected);
+  EXPECT_TRUE(identical(corrected.right.disparity_px, expected.right.disparity_px));
 }
 
 TEST(RowTrack, IsInterpolatedInTime) {

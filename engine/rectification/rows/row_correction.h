@@ -14,11 +14,6 @@ enum class RowMode {
   kAsIs
 };
 
-/// Help of --rows.
-inline constexpr const char* kRowsHelp =
-    "Rows that do not correspond. auto: where pairs themselves show a smooth offset of up to a few "
-    "pixels, right images are resampled, and their maps are brought back to their pixels";
-
 // The right image of a pair on the rows of the left one. The left image, its maps and all depths in
 // its pixels stay as they are, and disparities are differences of columns as before. All functions
 // are identical for any `execution`. Thread rule: may be called concurrently for different results.
