@@ -226,7 +226,7 @@ TEST(PairMatcher, CorrectsRowsAndBringsRightMapsBack) {
   as_is.match(left, right, {}, as_given, &of_given);
   StereoMatcher(options, execution).match(left, right, {}, expected);
   EXPECT_TRUE(identical(as_given.left.disparity_px, expected.left.disparity_px));
-  EXPECT_THAT(of_given.remarks, Not(Contains(Field(&Remark::subject, "rows"))));
+  EXPECT_THAT(of_given.remarks, Not(Contains(testing::Field(&Remark::subject, "rows"))));
 
   // Volumes of the right image are not brought back, so its rows stay.
   PosteriorMoments moments;
