@@ -10,7 +10,6 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/rectification/rotations.h"
 #include "engine/synthesis/view_assembly.h"
 #include "engine/synthesis/view_finisher.h"
 #include "engine/synthesis/warped_pair_layout.h"
@@ -20,30 +19,40 @@ namespace vantage {
 namespace {
 
 constexpr float kMinSupport = 0.3F;
-/// Smaller angles count as this one, in radians: a fraction of a pixel.
-constexpr float kMinAngle = 1e-5F;
+/// Smaller angles, in radians, and distances, in that of the farthest camera, count as this one: a
+/// fraction of a pixel.
+constexpr double kMinAside = 1e-5;
 
-/// Weights of the sources over the whole view, for its brightness: as at one point at a typical
-/// depth, in the middle.
+double farthest_distance(std::span<const BlendSource> sources) {
+  double largest = 0;
+  for (const BlendSource& source : sources) {
+    largest = std::max(largest, source.centre.norm());
+  }
+  return largest > 0 ? largest : 1;
+}
+
+/// Of a camera so far from a line of sight, in that of the farthest camera, under an angle between
+/// the two rays. Whatever is wrong with a map moves colours by as much as their camera is aside, so
+/// the variance of what it shows has this square as a factor.
+double weight_of(double share, double aside, double angle) {
+  const double counted = std::max(aside, kMinAside);
+  return share / (counted * counted * std::max(angle, kMinAside));
+}
+
+/// Weights of the sources over the whole view: as at one point at a typical depth, in the middle.
 std::vector<double> whole_weights(std::span<const BlendSource> sources) {
+  const double farthest = farthest_distance(sources);
   std::vector<double> weights;
   double sum = 0;
   for (const BlendSource& source : sources) {
-    weights.push_back(source.share / std::max(source.centre.norm(), 1e-300));
+    const double aside = source.centre.norm() / farthest;
+    weights.push_back(weight_of(source.share, aside, aside));
     sum += weights.back();
   }
   for (double& weight : weights) {
     weight /= sum;
   }
   return weights;
-}
-
-double camera_distance(std::span<const BlendSource> sources) {
-  double largest = 0;
-  for (const BlendSource& source : sources) {
-    largest = std::max(largest, source.centre.norm());
-  }
-  return largest;
 }
 
 }  // namespace
@@ -55,10 +64,12 @@ BlendedWarper<T>::BlendedWarper(std::span<const BlendSource> sources,
     : view_(view),
       gradient_limit_px_(static_cast<float>(options.disparity_gradient_limit_px)),
       sources_(sources.begin(), sources.end()),
+      weights_(whole_weights(sources)),
+      farthest_(farthest_distance(sources)),
       transforms_(sources.size()) {
   const ViewFrame frame{.width_px = view.width_px, .height_px = view.height_px};
   // Distances are compared with each other: scenes have any unit.
-  const double same_place = kSamePlace * camera_distance(sources);
+  const double same_place = kSamePlace * farthest_;
   for (const BlendSource& source : sources) {
     SynthesisOptions own = options;
     if (source.centre.norm() <= same_place) {
@@ -70,13 +81,12 @@ BlendedWarper<T>::BlendedWarper(std::span<const BlendSource> sources,
   }
   trust_at_ends_ = ViewFinisher<T>::trust_at_ends(options, alpha());
   // I_k = a_k + b_k I_1, so I = a + b (I_k − a_k) / b_k with the blended a and b.
-  const std::vector<double> weights = whole_weights(sources);
   for (std::size_t c = 0; c < 4; ++c) {
     double offset = 0;
     double gain = 0;
     for (std::size_t k = 0; k < sources_.size(); ++k) {
-      offset += weights[k] * sources_[k].on_first[c].offset / double{kGreyLevelsPerUnit<T>};
-      gain += weights[k] * sources_[k].on_first[c].gain;
+      offset += weights_[k] * sources_[k].on_first[c].offset / double{kGreyLevelsPerUnit<T>};
+      gain += weights_[k] * sources_[k].on_first[c].gain;
     }
     for (std::size_t k = 0; k < sources_.size(); ++k) {
       const double a = sources_[k].on_first[c].offset / double{kGreyLevelsPerUnit<T>};
@@ -125,6 +135,7 @@ void BlendedWarper<T>::warp(int y, std::span<float> scratch, float* memory) cons
   std::vector<float> weights(count);
   for (int x = 0; x < width(); ++x) {
     const Eigen::Vector3d ray = view_.ray_of_pixel * Eigen::Vector3d(x, y, 1);
+    const Eigen::Vector3d direction = ray.normalized();
     float all = 0;
     for (std::size_t k = 0; k < count; ++k) {
       const float q = nearness_of(k)[x];
@@ -132,11 +143,12 @@ void BlendedWarper<T>::warp(int y, std::span<float> scratch, float* memory) cons
       if (std::isnan(q)) {
         continue;
       }
-      // Both rays scaled by q, so that infinity is no special case.
-      const Eigen::Vector3d own = view_.scale_px * ray;
-      const Eigen::Vector3d other = own - double{q} * sources_[k].centre;
-      const auto angle = static_cast<float>(angle_between(own, other));
-      weights[k] = static_cast<float>(sources_[k].share) / std::max(angle, kMinAngle) *
+      const Eigen::Vector3d& centre = sources_[k].centre;
+      // Both rays scaled by q, so that infinity is no special case. The chord of the angle will do.
+      const Eigen::Vector3d own = view_.scale_px * ray - double{q} * centre;
+      const double angle = (own.normalized() - direction).norm();
+      const double aside = direction.cross(centre).norm() / farthest_;
+      weights[k] = static_cast<float>(weight_of(sources_[k].share, aside, angle)) *
                    (goes_on(nearness_of(k), x) ? 1.0F : trust_at_ends_);
       all += weights[k];
     }
@@ -194,11 +206,10 @@ double BlendedWarper<T>::coverage(const SurfaceEdge& edge) const {
   double covered = std::numeric_limits<double>::quiet_NaN();
   double weight = 0;
   for (std::size_t k = 0; k < images_.size(); ++k) {
-    const double own_weight = sources_[k].share / std::max(sources_[k].centre.norm(), 1e-300);
     const double own = images_[k].coverage(edge);
     if (!std::isnan(own)) {
-      covered = kernels::joint_coverage(weight / (weight + own_weight), covered, own);
-      weight += own_weight;
+      covered = kernels::joint_coverage(weight / (weight + weights_[k]), covered, own);
+      weight += weights_[k];
     }
   }
   return covered;

@@ -38,12 +38,14 @@ struct BlendedView {
 };
 
 /// Blends one or more photographs in a new view (3.4), per pixel by angle and visibility: each is
-/// weighted by share / angle between its ray and the view's at the surface point, so a camera at
-/// the view's own position has all the weight. Photographs that show another surface there do not
-/// count: the surface is the nearest one that at least kMinSupport of the weight of all photographs
-/// with a known pixel agree on within the gradient limit, or else that with most weight. A
-/// photograph whose surface ends beside the position counts less (BlendWeights::trust_at_ends). The
-/// brightness follows the weights over the whole view, not per pixel.
+/// weighed by share / (a² · angle), the angle between its ray and the view's at the surface point
+/// and a the distance of its camera from the view's ray. So a camera at the view's own position has
+/// all the weight, and far ones count little beside near ones that see the surface. Photographs
+/// that show another surface there do not count: the surface is the nearest one that at least
+/// kMinSupport of the weight of all photographs with a known pixel agree on within the gradient
+/// limit, or else that with most weight. A photograph whose surface ends beside the position counts
+/// less (BlendWeights::trust_at_ends). The brightness follows the weights over the whole view, not
+/// per pixel.
 ///
 /// Thread rule: warp() may be called concurrently. Does not own any memory it is given, which must
 /// outlive it. T is uint8_t, uint16_t or float.
@@ -82,6 +84,8 @@ class BlendedWarper {
   float trust_at_ends_;
   float gradient_limit_px_;
   std::vector<BlendSource> sources_;
+  std::vector<double> weights_;  ///< over the whole view; their sum is 1
+  double farthest_;              ///< of the cameras, from the view's
   std::vector<Transform> transforms_;
   std::deque<ImageWarper<T>> images_;
 };
