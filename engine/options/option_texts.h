@@ -175,7 +175,9 @@ inline constexpr std::array kOptionTexts = {
     OptionText{"fill", "",
                "Value of unmatched pixels. constant: disparity of the background beside them; "
                "linear: interpolated where both sides nearly agree, else constant; median: median "
-               "of similar pixels around; canonical: regions without texture interpolated between "
+               "of similar pixels around; planes: as median, and the band at the border that the "
+               "other image never shows by planes; canonical: regions without texture interpolated "
+               "between "
                "their ends, other pixels as median; thin-plate: the same, continuing slopes; none: "
                "unknown"},
     OptionText{

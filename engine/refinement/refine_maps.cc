@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/image/left_out.h"
+#include "engine/refinement/border_planes.h"
 #include "kernels/filled_median/filled_median.h"
 
 namespace vantage {
@@ -117,11 +118,15 @@ void fill(const RefinementOptions& options, const MapToRefine& map, Execution& e
       unmatched = &work.rest;
     }
     fill_unmatched(*unmatched, map.side, options.fill, execution, *component_px);
-    if (options.fill == Fill::kMedian || is_canonical) {
+    if (options.fill == Fill::kMedian || options.fill == Fill::kPlanes || is_canonical) {
       take_filled_medians(*unmatched, *map.image, median_grid(map), execution, work.filled_medians,
                           *component_px,
                           map.kept != nullptr && !is_canonical ? &map.kept->changed() : nullptr);
     }
+  }
+  if (options.fill == Fill::kPlanes && matched.disparity_y_px.empty()) {
+    fill_border_planes(matched.unmatched, map.side, map.pixels_per_column, map.search, execution,
+                       matched.disparity_px);
   }
   if (map.kept != nullptr) {
     if (!is_canonical) {  // whose regions reach over many tiles

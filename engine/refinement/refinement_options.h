@@ -15,6 +15,7 @@ enum class Fill {
   kConstant,   ///< the background depth next to them (EQUATIONS §5.4)
   kLinear,     ///< interpolated where the disparities on both sides nearly agree, else constant
   kMedian,     ///< constant, then the median of similar pixels nearby (filled_medians)
+  kPlanes,     ///< median; the band that the other image never shows: planes (border_planes)
   kCanonical,  ///< regions without texture: a membrane between their ends; others: as kMedian
   kThinPlate,  ///< the same with a thin plate
   kNone,       ///< unknown

@@ -58,7 +58,7 @@ void expect_within(const DisparityMap& map, DisparityRange search, const std::st
 TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
   const SlantedPair pair = slanted_pair();
   const std::vector<MethodCase> methods = method_cases(kSearch);
-  constexpr Fill kFills[] = {Fill::kConstant, Fill::kLinear,    Fill::kMedian,
+  constexpr Fill kFills[] = {Fill::kConstant, Fill::kLinear,    Fill::kMedian,   Fill::kPlanes,
                              Fill::kNone,     Fill::kCanonical, Fill::kThinPlate};
   DisparityMaps maps;
   const auto dimensions_fit = [&](const SampleRow& row) {
@@ -69,7 +69,7 @@ TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
   };
   // Methods, fills, surface fit, edge snapping, dimensions.
   for (const SampleRow& row :
-       sampled_rows({static_cast<int>(methods.size()), 6, 3, 2, 2}, dimensions_fit)) {
+       sampled_rows({static_cast<int>(methods.size()), 7, 3, 2, 2}, dimensions_fit)) {
     MatchOptions options = methods[static_cast<std::size_t>(row[0])].options;
     options.raw = false;
     options.parameters.subpixel = Subpixel::kParabola;
