@@ -20,6 +20,7 @@
 #include "apps/settings/suggestions.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
+#include "engine/message_line.h"
 #include "engine/options/setting_value.h"
 #include "engine/quoted_text.h"
 #include "scheduler/interruption.h"
@@ -100,7 +101,7 @@ std::string unknown_command(const Arguments& arguments) {
 /// Prints the message as one line on stderr, whatever characters it has.
 int fail(const std::string& command, const std::string& message, int exit_code) {
   const std::string line = fmt::format("vantage{}{}: {}\n", command.empty() ? "" : " ", command,
-                                       vantage::printable(vantage::apps::with_dashes(message)));
+                                       vantage::apps::with_dashes(vantage::message_line(message)));
   vantage::apps::tell_text(line);
   return exit_code;
 }

@@ -236,7 +236,7 @@ py::tuple state_of(const StereoCalibration& c) {
       c.image_size ? Size({c.image_size->width_px, c.image_size->height_px}) : Size(),
       c.metres_per_unit, c.has_scale, c.is_rectified,
       c.kitti_cameras ? std::optional(static_cast<int>(*c.kitti_cameras)) : std::nullopt,
-      c.has_other_cameras, c.format, c.file, c.left.lens == LensKind::kFisheye,
+      c.has_other_cameras, c.format, text_of(c.file), c.left.lens == LensKind::kFisheye,
       c.right.lens == LensKind::kFisheye);
 }
 
@@ -260,7 +260,7 @@ StereoCalibration of_state(const py::tuple& state) {
   }
   c.has_other_cameras = state[11].cast<bool>();
   c.format = state[12].cast<std::string>();
-  c.file = state[13].cast<std::string>();
+  c.file = bytes_of(state[13]);
   c.left.lens = state[14].cast<bool>() ? LensKind::kFisheye : LensKind::kStandard;
   c.right.lens = state[15].cast<bool>() ? LensKind::kFisheye : LensKind::kStandard;
   validate(c);

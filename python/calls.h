@@ -31,11 +31,23 @@ class ReleasedGil {
   PyThreadState* thread_;
 };
 
+/// A call of the engine, while it lives. Threads of a process end in its forked children, whatever
+/// they hold: where a process was forked during a call of another of its threads, the constructor
+/// throws Error in the child. Thread rule: with the GIL.
+class EngineCall {
+ public:
+  EngineCall();
+  EngineCall(const EngineCall&) = delete;
+  EngineCall& operator=(const EngineCall&) = delete;
+  ~EngineCall();
+};
+
 /// Runs `work` without the GIL. `work` touches no Python object; what computes on an execution
 /// takes on_threads_of(). Ctrl-C in the main thread ends loops of executions in it.
 template <typename Work>
 auto without_gil(const Work& work) {
   try {
+    const EngineCall call;
     const ReleasedGil release;
     scheduler::InterruptibleScope scope(has_raised_signal);
     return work();
@@ -54,8 +66,15 @@ auto on_threads_of(Execution& execution, const Work& work) {
   });
 }
 
-/// The path that an object stands for (str, bytes, pathlib.Path). Throws TypeError.
+/// The path that an object stands for (str, bytes, pathlib.Path). Throws TypeError; UsageError for
+/// a null character.
 std::string path_of(const pybind11::object& path);
+
+/// A str or bytes as bytes: UTF-8, or a name of any bytes as os.fsencode() has it. Throws
+/// UsageError for a null character.
+std::string bytes_of(const pybind11::handle& text);
+/// The str that os.fsdecode() makes of a name.
+pybind11::str text_of(const std::string& bytes);
 
 /// A Calibration, that of a file if it is a path, or None. Throws Error, TypeError.
 std::optional<StereoCalibration> calibration_from(const pybind11::object& object);

@@ -12,6 +12,7 @@
 #include "engine/options/execution_settings.h"
 #include "engine/options/nearest_name.h"
 #include "engine/quoted_text.h"
+#include "python/calls.h"
 
 namespace vantage::python {
 namespace py = pybind11;
@@ -44,8 +45,8 @@ SettingValue to_value(const py::handle& object) {
   if (py::isinstance<py::float_>(object)) {
     return object.cast<double>();
   }
-  if (py::isinstance<py::str>(object)) {
-    return object.cast<std::string>();
+  if (py::isinstance<py::str>(object) || py::isinstance<py::bytes>(object)) {
+    return bytes_of(object);
   }
   if (py::isinstance<py::dict>(object)) {
     SettingValue members = SettingValue::object();
@@ -142,7 +143,7 @@ Execution& take_execution(py::dict& options) {
 
 SettingValue read_toml(const std::string& path) {
   try {
-    const py::object file = py::module_::import("builtins").attr("open")(path, "rb");
+    const py::object file = py::module_::import("builtins").attr("open")(text_of(path), "rb");
     const py::object document = py::module_::import("tomllib").attr("load")(file);
     file.attr("close")();
     return to_value(document);
@@ -166,7 +167,7 @@ py::object to_python(const SettingValue& value) {
     return py::float_(value.get<double>());
   }
   if (value.is_string()) {
-    return py::str(value.get<std::string>());
+    return text_of(value.get<std::string>());
   }
   if (value.is_array()) {
     py::list list;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "engine/quoted_text.h"
 #include "engine/remark.h"
 
 namespace vantage::python {
@@ -17,7 +18,7 @@ class RemarkWarnings {
   void warn(std::span<const Remark> remarks) {
     for (const Remark& remark : remarks) {
       if (told_.emplace(remark.subject).second &&
-          PyErr_WarnEx(PyExc_UserWarning, remark.text.c_str(), 2) != 0) {
+          PyErr_WarnEx(PyExc_UserWarning, printable(remark.text).c_str(), 2) != 0) {
         throw pybind11::error_already_set();
       }
     }

@@ -241,7 +241,7 @@ class FrameLoop {
     });
     py::dict found;
     found["index"] = opened_->job.input.live ? slot.pair.index : slot.frame;
-    found["name"] = name;
+    found["name"] = text_of(name);
     found["left"] = array_of(std::move(images.first), opened_->order);
     found["right"] = array_of(std::move(images.second), opened_->order);
     found["result"] = py::cast(std::make_unique<MatchResult>(
@@ -251,7 +251,11 @@ class FrameLoop {
     found["share_reused"] = slot.match.searched_share
                                 ? py::object(py::float_(1 - *slot.match.searched_share))
                                 : py::none();
-    found["remarks"] = py::cast(slot.pair.remarks);
+    py::list remarks;
+    for (const std::string& remark : slot.pair.remarks) {
+      remarks.append(text_of(remark));
+    }
+    found["remarks"] = remarks;
     return found;
   }
 

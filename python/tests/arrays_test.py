@@ -2,6 +2,7 @@
 
 import ctypes
 import mmap
+import os
 import warnings
 
 import numpy as np
@@ -223,3 +224,30 @@ def test_maps_of_other_tools(tmp_path):
         vantage.disparity(found)
     with pytest.raises(ValueError, match="max.depth"):
         vantage.disparity(found, **rig, max_depth=3)
+
+
+def test_names_of_any_bytes(tmp_path, pair):
+    folder = os.fsencode(tmp_path) + b"/\xff\xe9"
+    os.mkdir(folder)
+    for name in (folder + b"/a.png", os.fsdecode(folder + b"/b.png")):
+        vantage.write_image(name, pair[0])
+        assert (vantage.read_image(name) == pair[0]).all()
+    with pytest.raises(vantage.Error, match=r"\\xFF\\xE9/none.png"):
+        vantage.read_image(folder + b"/none.png")
+    for side in ("left", "right"):
+        os.mkdir(folder + b"/" + side.encode())
+        vantage.write_image(folder + b"/" + side.encode() + b"/0.png", pair[0])
+    for convert in (os.fsdecode, lambda name: name):
+        names = [convert(folder + b"/" + side) for side in (b"left", b"right")]
+        frames = list(vantage.Sequence(*names, disparities=(0, 7), method="ssd"))
+        assert len(frames) == 1
+
+
+@pytest.mark.parametrize("name", ["a\0b.png", b"a\0b.png"])
+def test_names_with_a_null_character(name, pair):
+    with pytest.raises(ValueError, match="null character"):
+        vantage.read_image(name)
+    with pytest.raises(ValueError, match="null character"):
+        vantage.write_image(name, pair[0])
+    with pytest.raises(ValueError, match="null character"):
+        vantage.Sequence(name, name)

@@ -165,3 +165,32 @@ def test_cv2_keeps_its_settings(scene):
     vantage.rectify(*(vantage.read_image(scene / f"{side}.png") for side in ["left", "right"]),
                     scene / "calib.txt")
     assert cv2.getNumThreads() == 3
+
+
+def test_a_child_forked_while_another_thread_computes_says_so():
+    matcher = vantage.Matcher(disparities=(0, 255), threads=1)
+    left = np.random.default_rng(1).integers(0, 256, (480, 640), np.uint8)
+    thread = threading.Thread(target=lambda: [matcher.compute(left, left) for _ in range(3)])
+    thread.start()
+    time.sleep(0.05)
+    child = os.fork()
+    if child == 0:
+        try:
+            signal.alarm(20)
+            matcher.compute(left, left)
+            os._exit(1)
+        except vantage.Error as problem:
+            os._exit(0 if "forked while another thread computed" in str(problem) else 2)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    thread.join()
+    assert same(matcher.compute(left, left).disparity, matcher.compute(left, left).disparity)
+
+
+def test_a_child_forked_before_anything_computes_works():
+    left = np.random.default_rng(1).integers(0, 256, (48, 64), np.uint8)
+    child = os.fork()
+    if child == 0:
+        signal.alarm(20)
+        vantage.Matcher(disparities=(0, 7), threads=3).compute(left, left)
+        os._exit(0)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0

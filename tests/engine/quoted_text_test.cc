@@ -1,6 +1,7 @@
 #include "engine/quoted_text.h"
 
 #include "engine/io/files/json_text.h"
+#include "engine/message_line.h"
 #include "tests/engine/engine_test.h"
 
 namespace vantage::quoted_text_test {
@@ -64,6 +65,15 @@ TEST(JsonText, QuotesValuesShortened) {
   EXPECT_EQ(quoted_json({1, "b"}), "[1,\"b\"]");
   EXPECT_THAT(quoted_json(nlohmann::ordered_json(std::vector<int>(1000, 7))), HasSubstr("bytes)"));
   EXPECT_EQ(quoted_json("\xFF"), "'\\xFF'");
+}
+
+TEST(MessageLine, IsShortAndPrintable) {
+  EXPECT_EQ(message_line("a\nb"), "a\\nb");
+  const std::string whole(4000, 'a');
+  EXPECT_EQ(message_line(whole), whole);
+  EXPECT_EQ(message_line(whole + 'b'), whole + "... (4001 bytes)");
+  // A character of two bytes lies across the limit.
+  EXPECT_EQ(message_line(whole.substr(1) + "\u00e9"), whole.substr(1) + "... (4001 bytes)");
 }
 
 }  // namespace vantage::quoted_text_test
