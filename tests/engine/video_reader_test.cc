@@ -4,6 +4,10 @@
 #include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
 namespace vantage::video_reader_test {
 
 /// RGB in 0..1 of luma and chroma, by the definition of the standards.
@@ -320,6 +324,18 @@ TEST(VideoReader, RefusesAbsurdSizes) {
   const TemporaryFolder folder;
   put_text(folder / "a.y4m", "YUV4MPEG2 W60000 H60000 F25:1 C444\nFRAME\nxxxx");
   EXPECT_THAT(error_of([&] { VideoReader(folder / "a.y4m"); }), HasSubstr("a.y4m"));
+}
+
+/// Codecs of games and screens are not opened, whatever a file calls its frames.
+TEST(VideoReader, ReadsFootageOnly) {
+  const TemporaryFolder folder;
+  put_numbered_video(folder / "film.mp4", 2, {25, 1});
+  put_tracks({folder / "film.mp4"}, folder / "a.avi", "avi", [](AVStream& stream, int) {
+    stream.codecpar->codec_id = AV_CODEC_ID_MSVIDEO1;
+    stream.codecpar->codec_tag = 0;
+  });
+  EXPECT_THAT(error_of([&] { VideoReader(folder / "a.avi"); }),
+              HasSubstr("a.avi: its codec msvideo1 is none that footage uses"));
 }
 
 }  // namespace vantage::video_reader_test

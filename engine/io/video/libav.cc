@@ -17,6 +17,7 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/audio_fifo.h>
+#include <libavutil/avstring.h>
 #include <libavutil/macros.h>
 #include <libswresample/swresample.h>
 #include <libswscale/swscale.h>
@@ -24,6 +25,26 @@ extern "C" {
 
 namespace vantage {
 namespace {
+
+/// Containers, and raw streams with frames of one video.
+constexpr const char* kVideoContainers =
+    "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,av1,obu,ivf,"
+    "vc1,mjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
+
+/// Decoders of what cameras, recorders and editors of films have written: FFmpeg has 500 more, many
+/// of games and of formats that nobody has fuzzed for long.
+constexpr const char* kFootageDecoders =
+    "h264,hevc,av1,libdav1d,libaom-av1,libgav1,vp8,vp9,libvpx,libvpx-vp9,mpeg1video,mpeg2video,"
+    "mpegvideo,mpeg4,msmpeg4v1,msmpeg4v2,msmpeg4,h261,h263,h263i,h263p,flv,vp6,vp6a,vp6f,wmv1,wmv2,"
+    "wmv3,vc1,rv10,rv20,rv30,rv40,svq1,svq3,cinepak,theora,dirac,mjpeg,mjpegb,prores,dnxhd,cfhd,"
+    "dvvideo,hap,ffv1,ffvhuff,huffyuv,utvideo,magicyuv,lagarith,qtrle,rawvideo,v210,v308,v408,v410,"
+    "r210,r10k,jpeg2000,libopenjpeg,png,apng,gif,"
+    "aac,aac_fixed,aac_latm,libfdk_aac,ac3,ac3_fixed,eac3,dca,truehd,mlp,mp1,mp1float,mp2,mp2float,"
+    "mp3,mp3float,flac,alac,opus,libopus,vorbis,libvorbis,wmav1,wmav2,wmapro,amrnb,amrwb,"
+    "libopencore_amrnb,libopencore_amrwb,cook,speex,libspeex,nellymoser,adpcm_ms,adpcm_ima_wav,"
+    "adpcm_ima_qt,adpcm_swf,pcm_alaw,pcm_mulaw,pcm_u8,pcm_s8,pcm_s16le,pcm_s16be,pcm_s24le,"
+    "pcm_s24be,pcm_s32le,pcm_s32be,pcm_f32le,pcm_f32be,pcm_f64le,pcm_f64be,pcm_bluray,pcm_dvd,"
+    "s302m";
 
 namespace fs = std::filesystem;
 
@@ -149,6 +170,19 @@ void silence_libav() {
   (void)silent;
 }
 
+void limit_to_footage(AVFormatContext& input) {
+  constexpr unsigned kMaxStreams = 100;
+  constexpr std::int64_t kProbedBytes = 5'000'000;
+  input.format_whitelist = av_strdup(kVideoContainers);
+  input.codec_whitelist = av_strdup(kFootageDecoders);
+  input.max_streams = kMaxStreams;
+  input.probesize = kProbedBytes;
+}
+
+bool is_for_footage(const AVCodec& decoder) {
+  return av_match_list(decoder.name, kFootageDecoders, ',') > 0;
+}
+
 LibavInput open_media_file(const fs::path& path) {
   silence_libav();
   check_is_video_file(path);
@@ -163,7 +197,7 @@ LibavInput open_media_file(const fs::path& path) {
   if (opened == nullptr) {
     throw std::bad_alloc();
   }
-  opened->format_whitelist = av_strdup(kVideoContainers);
+  limit_to_footage(*opened);
   opened->protocol_whitelist = av_strdup("file");
   // "file:" keeps names with a colon from being parsed as URLs. On failure `opened` is freed.
   const std::string address = "file:" + path.string();

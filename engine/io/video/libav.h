@@ -7,6 +7,7 @@
 #include <vector>
 
 struct AVAudioFifo;
+struct AVCodec;
 struct AVCodecContext;
 struct AVFilterContext;
 struct AVFilterGraph;
@@ -55,11 +56,11 @@ std::string libav_message(int error);
 /// call applies to the whole process. Thread rule: may be called concurrently.
 void silence_libav();
 
-/// Demultiplexers of containers and of raw streams with frames of one video, as a whitelist of
-/// FFmpeg. None opens what its content names.
-inline constexpr const char* kVideoContainers =
-    "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,av1,obu,ivf,"
-    "vc1,mjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
+/// Leaves the demultiplexers and decoders that footage uses, and limits what is read to find out
+/// what a file holds. No demultiplexer opens what its content names. Before avformat_open_input().
+void limit_to_footage(AVFormatContext& input);
+/// Whether a decoder is one of these.
+bool is_for_footage(const AVCodec& decoder);
 
 /// Opens a video file and determines its streams. Only files are opened, and only containers that
 /// hold one video: no playlists, which name other files, no text, no images. A truncated file opens

@@ -212,10 +212,11 @@ LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate 
   }
   opened->pb = io_;
   opened->interrupt_callback = {is_over, this};
-  opened->protocol_whitelist = av_strdup(kind_ == Kind::kRtsp ? "rtsp,rtp,udp,tcp" : kNothing);
-  if (format == nullptr) {
-    opened->format_whitelist = av_strdup(kVideoContainers);
+  limit_to_footage(*opened);
+  if (format != nullptr) {  // what is no container is chosen here, not by its bytes
+    av_freep(&opened->format_whitelist);
   }
+  opened->protocol_whitelist = av_strdup(kind_ == Kind::kRtsp ? "rtsp,rtp,udp,tcp" : kNothing);
   // Rates are those that are stated: frames are not awaited to measure them.
   opened->fps_probe_size = 0;
   kind_ == Kind::kRtsp ? wait_at_most(kConnecting) : allow_silence();

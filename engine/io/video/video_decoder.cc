@@ -45,6 +45,10 @@ LibavCodec open_decoder(const AVStream& stream, int threads, const std::string& 
     throw Error(fmt::format("{}: its codec {} is not supported", name,
                             libav().avcodec_get_name(stream.codecpar->codec_id)));
   }
+  if (!is_for_footage(*decoder)) {
+    throw Error(fmt::format("{}: its codec {} is none that footage uses, which alone are read",
+                            name, libav().avcodec_get_name(stream.codecpar->codec_id)));
+  }
   LibavCodec codec(libav().avcodec_alloc_context3(decoder));
   if (codec == nullptr) {
     throw std::bad_alloc();

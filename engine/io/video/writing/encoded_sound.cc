@@ -120,7 +120,7 @@ EncodedSound::EncodedSound(SoundInput input) : input_(std::move(input)) {
 void EncodedSound::open_decoder() {
   const AVCodecParameters& source = *input_.stream()->codecpar;
   const AVCodec* codec = libav().avcodec_find_decoder(source.codec_id);
-  if (codec == nullptr) {
+  if (codec == nullptr || !is_for_footage(*codec)) {
     input_.fail(std::string("no decoder for ") + libav().avcodec_get_name(source.codec_id));
   }
   decoder_ = make_codec(codec);
