@@ -3,12 +3,31 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <initializer_list>
+#include <new>
 
 #include "apps/process/interrupt.h"
 
 namespace vantage::apps {
+namespace {
+
+/// Given back when memory is used up for the first time, for what ends the work: destructors of
+/// JSON values allocate, messages do. Large enough to be a mapping of its own.
+constexpr std::size_t kReserveBytes = std::size_t{512} << 10;
+std::atomic<void*> reserve{nullptr};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+
+void give_reserve_back() {
+  void* const block = reserve.exchange(nullptr);
+  if (block == nullptr) {
+    throw std::bad_alloc();
+  }
+  std::free(block);  // NOLINT(cppcoreguidelines-no-malloc)
+}
+
+}  // namespace
 
 void set_up_process() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -21,6 +40,8 @@ void set_up_process() {
   (void)std::signal(SIGPIPE, SIG_IGN);
   (void)std::signal(SIGXFSZ, SIG_IGN);
   remove_files_on_signals();
+  reserve = std::malloc(kReserveBytes);  // NOLINT(cppcoreguidelines-no-malloc)
+  std::set_new_handler(give_reserve_back);
 }
 
 }  // namespace vantage::apps

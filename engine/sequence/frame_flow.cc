@@ -37,6 +37,9 @@ scheduler::FrameOutcome FrameFlow::flow(const std::atomic<bool>* stop) {
   steps.write = [&](int slot) { hand_over(slot_of(slot)); };
   steps.compute_in_order = worker_.computes_in_order();
   const auto skip_slot = [&](int slot, const std::exception_ptr& error) {
+    if (slot_of(slot) == nullptr) {  // there was no memory for it
+      std::rethrow_exception(error);
+    }
     handle(*slot_of(slot), error);
     return true;
   };

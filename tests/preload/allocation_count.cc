@@ -1,11 +1,17 @@
 // Preloaded into a program under test: counts allocations, and tells at the end how many there were
-// of which size: lines "SIZE COUNT", SIZE the power of two that the allocations reach at least.
-// Environment: ALLOCATION_COUNT, the file to write.
+// of which size: lines "SIZE COUNT", SIZE the power of two that the allocations reach at least; and
+// lets them fail. Environment:
+//   ALLOCATION_COUNT  the file to write
+//   ALLOCATION_FAIL   number (from 1) of the allocation that gets no memory, nor does the one after
+//                     it, with which a program that has a reserve tries again; of those
+//   ALLOCATION_BYTES  of at least so many bytes
+//   ALLOCATION_MOST   and of at most so many; 0: of any number
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cerrno>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -17,9 +23,28 @@ constexpr std::size_t kSizes = 48;
 // There is nothing to hand a state through.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
 std::array<std::atomic<long>, kSizes> counts{};
+std::atomic<long> large{0};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
-void count(std::size_t bytes) {
+std::size_t number_in(const char* variable) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? 0 : std::strtoul(text, nullptr, 10);
+}
+
+/// Counts an allocation; true when it has to fail.
+bool fails(std::size_t bytes) {
   counts[std::min<std::size_t>(kSizes - 1, bytes == 0 ? 0 : std::bit_width(bytes) - 1)]++;
+  static const std::size_t failing = number_in("ALLOCATION_FAIL");
+  static const std::size_t least = number_in("ALLOCATION_BYTES");
+  static const std::size_t most = number_in("ALLOCATION_MOST");
+  if (failing == 0 || bytes < least || (most > 0 && bytes > most)) {
+    return false;
+  }
+  const auto number = static_cast<std::size_t>(++large);
+  if (number != failing && number != failing + 1) {
+    return false;
+  }
+  errno = ENOMEM;
+  return true;
 }
 
 struct WriteAtEnd {
@@ -47,35 +72,27 @@ void* __libc_calloc(std::size_t members, std::size_t bytes);
 void* __libc_realloc(void* block, std::size_t bytes);
 void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
-void* malloc(std::size_t bytes) {
-  count(bytes);
-  return __libc_malloc(bytes);
-}
+void* malloc(std::size_t bytes) { return fails(bytes) ? nullptr : __libc_malloc(bytes); }
 
 void* calloc(std::size_t members, std::size_t bytes) {
-  count(members * bytes);
-  return __libc_calloc(members, bytes);
+  return fails(members * bytes) ? nullptr : __libc_calloc(members, bytes);
 }
 
 void* realloc(void* block, std::size_t bytes) {
-  count(bytes);
-  return __libc_realloc(block, bytes);
+  return fails(bytes) ? nullptr : __libc_realloc(block, bytes);
 }
 
 void* memalign(std::size_t alignment, std::size_t bytes) {
-  count(bytes);
-  return __libc_memalign(alignment, bytes);
+  return fails(bytes) ? nullptr : __libc_memalign(alignment, bytes);
 }
 
 void* aligned_alloc(std::size_t alignment, std::size_t bytes) {
-  count(bytes);
-  return __libc_memalign(alignment, bytes);
+  return fails(bytes) ? nullptr : __libc_memalign(alignment, bytes);
 }
 
 int posix_memalign(void** block, std::size_t alignment, std::size_t bytes) {
-  count(bytes);
-  *block = __libc_memalign(alignment, bytes);
-  return *block == nullptr ? 12 : 0;  // ENOMEM
+  *block = fails(bytes) ? nullptr : __libc_memalign(alignment, bytes);
+  return *block == nullptr ? ENOMEM : 0;
 }
 
 }  // extern "C"
