@@ -1,11 +1,9 @@
 #include "python/calls.h"
 
-#include <pthread.h>
-
 #include <atomic>
 #include <chrono>
 #include <exception>
-#include <thread>
+#include <thread>  // and pthread_atfork(), of the library that threads are made with
 
 #include "engine/error.h"
 #include "engine/message_line.h"
