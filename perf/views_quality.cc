@@ -91,6 +91,7 @@ const std::vector<Contender>& contenders() {
   static const std::vector<Contender> list = {
       {"truth, one-pass", "truth", ours({})},
       {"hard edges", "truth", ours({.soft_edges = false})},
+      {"mirror", "truth", ours({.holes = HoleFilling::kMirror})},
       {"spread", "truth", ours({.holes = HoleFilling::kSpread})},
       {"inpaint", "truth", ours({.holes = HoleFilling::kInpaint})},
       {"texture", "truth", ours({.holes = HoleFilling::kTexture})},
@@ -102,6 +103,7 @@ const std::vector<Contender>& contenders() {
       {"balanced", "balanced", ours({})},
       {"balanced, forward", "balanced", ours({.warp = WarpColour::kForward})},
       {"balanced, hard edges", "balanced", ours({.soft_edges = false})},
+      {"balanced, mirror", "balanced", ours({.holes = HoleFilling::kMirror})},
       {"balanced, inpaint", "balanced", ours({.holes = HoleFilling::kInpaint})},
       {"balanced, texture", "balanced", ours({.holes = HoleFilling::kTexture})},
       {"balanced, median", "balanced, median", ours({})},

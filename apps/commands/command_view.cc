@@ -57,11 +57,13 @@ void add_page_settings(Settings& settings, ViewPageOptions& page) {
   settings.start_group("View synthesis");
   settings.choice<HoleFilling>(
       "holes", page.synthesis.holes,
-      {{"mirror", HoleFilling::kMirror},
+      {{"interpolate", HoleFilling::kInterpolate},
+       {"mirror", HoleFilling::kMirror},
        {"spread", HoleFilling::kSpread},
        {"none", HoleFilling::kNone}},
-      "Filling of areas that no image shows: background mirrored along the row (mirror), its "
-      "border pixel repeated (spread), or black (none)");
+      "Filling of areas that no image shows: weighted means of the background (interpolate); "
+      "background mirrored along the row (mirror), its border pixel repeated (spread); black "
+      "(none)");
   add_combining_settings(settings, page.synthesis);
 }
 

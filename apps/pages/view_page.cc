@@ -141,8 +141,10 @@ std::string_view name_of(HoleFilling holes) {
       return "spread";
     case HoleFilling::kNone:
       return "none";
-    default:
+    case HoleFilling::kMirror:
       return "mirror";
+    default:
+      return "interpolate";
   }
 }
 
@@ -203,8 +205,8 @@ std::string shader_elements() {
   std::string result;
   for (const std::string_view name :
        {"disparity.glsl", "warp.vert", "warp.frag", "screen.vert", "combine.frag", "fill.frag",
-        "soften.frag", "outlines.frag", "rows.frag", "show.frag", "cloud.vert", "cloud.frag",
-        "headset.vert"}) {
+        "interpolate.frag", "soften.frag", "outlines.frag", "rows.frag", "show.frag", "cloud.vert",
+        "cloud.frag", "headset.vert"}) {
     result += fmt::format("<script type=\"text/plain\" id=\"{}\">\n{}</script>\n", name,
                           embedded_file(fmt::format("view_page/{}", name)));
   }

@@ -23,14 +23,15 @@ void add_soft_edges_setting(Settings& settings, bool& soft_edges) {
 void add_holes_setting(Settings& settings, HoleFilling& holes) {
   settings.choice<HoleFilling>(
       "holes", holes,
-      {{"mirror", HoleFilling::kMirror},
+      {{"interpolate", HoleFilling::kInterpolate},
+       {"mirror", HoleFilling::kMirror},
        {"spread", HoleFilling::kSpread},
        {"inpaint", HoleFilling::kInpaint},
        {"texture", HoleFilling::kTexture},
        {"none", HoleFilling::kNone}},
-      "Filling of areas that no image shows: background mirrored along the row (mirror), its "
-      "border pixel repeated (spread), continued from all sides (inpaint) or copied in patches "
-      "(texture), or black (none)");
+      "Filling of areas that no image shows: weighted means of the background (interpolate); "
+      "background mirrored along the row (mirror), its border pixel repeated (spread), continued "
+      "from all sides (inpaint), copied in patches (texture); black (none)");
 }
 
 void add_combining_settings(Settings& settings, SynthesisOptions& options) {

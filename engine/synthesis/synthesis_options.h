@@ -6,11 +6,12 @@ namespace vantage {
 
 /// How holes, which neither warped image covers, are filled (EQUATIONS §6, hole filling).
 enum class HoleFilling {
-  kMirror,   ///< the background side mirrored along the scanline
-  kSpread,   ///< the background side's border pixel repeated
-  kNone,     ///< left black
-  kInpaint,  ///< continued from the background around them in all directions
-  kTexture   ///< patches of the background copied into them: its texture goes on
+  kMirror,      ///< the background side mirrored along the scanline
+  kSpread,      ///< the background side's border pixel repeated
+  kNone,        ///< left black
+  kInpaint,     ///< continued from the background around them in all directions
+  kTexture,     ///< patches of the background copied into them: its texture goes on
+  kInterpolate  ///< means of the background around them, weighted by distance
 };
 
 /// How colour is transferred to the new view after the forward mapping of disparities.
@@ -20,13 +21,13 @@ enum class WarpColour {
 };
 
 /// Whether holes are filled when all rows of a view are complete.
-inline bool fills_across_rows(HoleFilling holes) {
+inline bool needs_whole_image(HoleFilling holes) {
   return holes == HoleFilling::kInpaint || holes == HoleFilling::kTexture;
 }
 
 struct SynthesisOptions {
   WarpColour warp = WarpColour::kOnePass;
-  HoleFilling holes = HoleFilling::kMirror;
+  HoleFilling holes = HoleFilling::kInterpolate;
   /// γ of (3.12), 0..1: blends the brightness of the two cameras (1 = left). Empty: γ = α, so that
   /// a view at a camera's position has the brightness of its photograph.
   std::optional<double> gamma = std::nullopt;

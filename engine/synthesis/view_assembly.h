@@ -61,7 +61,8 @@ class ViewAssembly {
     view.holes.resize(width_, height_);
     view.sources.resize(width_, height_);
     combine(image, view);
-    if (options_.holes == HoleFilling::kMirror || options_.holes == HoleFilling::kSpread) {
+    if (options_.holes == HoleFilling::kInterpolate || options_.holes == HoleFilling::kMirror ||
+        options_.holes == HoleFilling::kSpread) {
       fill_empty_rows(image);
     }
     std::int64_t holes = 0;

@@ -3,10 +3,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <variant>
 
 #include "engine/execution.h"
 #include "engine/image/image.h"
+#include "engine/synthesis/background_interpolation.h"
+#include "engine/synthesis/row_bands.h"
 #include "engine/synthesis/soft_outlines.h"
 #include "engine/synthesis/synthesis_options.h"
 #include "kernels/intensity_sums/intensity_sums.h"
@@ -26,7 +30,8 @@ struct BlendedScanline {
 using OutlinePlaces = std::variant<std::array<double, 2>, EdgeCoverage>;
 
 /// Finishes blended scanlines of a view: fills holes and softens outlines, in the order that the
-/// hole filling needs: mostly row by row, inpainting and texture when all rows are complete.
+/// hole filling needs: row by row, interpolation along rows in bands, inpainting, texture and all
+/// outlines of surfaces when all rows are complete.
 ///
 /// Thread rule: finish_row() may be called concurrently for different rows, once for each;
 /// finish_view() after all of them. Does not own what it is given, which must outlive it. T is
@@ -58,6 +63,7 @@ class ViewFinisher {
   // Buffers of a row: disparities with filled holes, filled pixels and shares of neighbours.
   struct RowMemory {
     float* disparity_px;
+    std::int32_t* outlines;  // their number
     std::uint8_t* filled;
     std::uint8_t* shares;
   };
@@ -67,6 +73,9 @@ class ViewFinisher {
   [[nodiscard]] ImageView<const float> kept_disparity() const;
   [[nodiscard]] ImageView<const std::uint8_t> kept_filled() const;
   void fill_row(const BlendedScanline& row, const RowMemory& memory);
+  void make_row(const BlendedScanline& row, const RowMemory& memory);
+  void interpolate_rows(int first, int end);
+  void mix_outlines(int y, const RowMemory& memory);
 
   const SynthesisOptions& options_;
   double alpha_;
@@ -76,7 +85,10 @@ class ViewFinisher {
   ImageView<T> image_;
   ImageView<std::uint8_t> sources_;
   Execution& execution_;
-  scheduler::ScratchPool::Lease kept_memory_;  // of all rows, for steps that work across rows
+  scheduler::ScratchPool::Lease kept_memory_;  // of all rows, for steps over the whole image
+  scheduler::ScratchPool::Lease hole_rows_memory_;
+  std::span<HoleRow> hole_rows_;   // for interpolation
+  std::optional<RowBands> bands_;  // for interpolation, if rows are not kept
 };
 
 }  // namespace vantage

@@ -171,7 +171,7 @@ TEST_F(ViewCommand, OptionsReachThePage) {
   EXPECT_THAT(usual["rangeX"], ElementsAre(-0.5, 1.5));
   EXPECT_THAT(usual["rangeY"], ElementsAre(-0.2, 0.2));
   EXPECT_TRUE(usual["gamma"].is_null());
-  EXPECT_EQ(usual["holes"], "mirror");
+  EXPECT_EQ(usual["holes"], "interpolate");
   EXPECT_EQ(usual["softEdges"], true);
   EXPECT_EQ(usual["gradientLimit"], 1.0);
   EXPECT_NEAR(frame_of(page())["intensity"]["gain"][0], 1.0, 0.1);

@@ -177,7 +177,8 @@ class ViewPageTest(unittest.TestCase):
         pair = [left, right, "--left-disparity", maps[0], "--right-disparity", maps[1],
                 "--disparity-scale", "16"]
         # Mostly without the regression: so small a picture has not the same one everywhere.
-        for name, options in {"mirror": ["--gamma", "alpha"],
+        for name, options in {"interpolate": [],
+                              "mirror": ["--gamma", "alpha"],
                               "spread": ["--gradient-limit", "4", "--no-intensity-matching"],
                               "none": ["--no-intensity-matching"]}.items():
             options += ["--holes", name]

@@ -125,7 +125,8 @@ TEST(ViewFinisher, IsBlendThenFillThenMix) {
 TEST(ViewFinisher, LeavesNoGhostOfAnOutline) {
   const ObjectScene scene;
   for (const HoleFilling holes :
-       {HoleFilling::kMirror, HoleFilling::kSpread, HoleFilling::kInpaint, HoleFilling::kTexture}) {
+       {HoleFilling::kInterpolate, HoleFilling::kMirror, HoleFilling::kSpread,
+        HoleFilling::kInpaint, HoleFilling::kTexture}) {
     for (const double view_x : {0.5, 1.5, -0.5}) {
       const SynthesizedView soft = scene.view({.holes = holes}, view_x);
       const SynthesizedView hard = scene.view({.holes = holes, .soft_edges = false}, view_x);
@@ -147,8 +148,8 @@ TEST(ViewFinisher, LeavesNoGhostOfAnOutline) {
 TEST(ViewFinisher, CamerasHaveTheirOwnOutlines) {
   const ObjectScene scene;
   for (const double camera : {0.0, 1.0}) {
-    for (const HoleFilling holes :
-         {HoleFilling::kMirror, HoleFilling::kInpaint, HoleFilling::kTexture}) {
+    for (const HoleFilling holes : {HoleFilling::kInterpolate, HoleFilling::kMirror,
+                                    HoleFilling::kInpaint, HoleFilling::kTexture}) {
       const SynthesizedView soft = scene.view({.holes = holes}, camera);
       const SynthesizedView hard = scene.view({.holes = holes, .soft_edges = false}, camera);
       for (int y = 0; y < ObjectScene::kHeight; ++y) {
@@ -162,7 +163,8 @@ TEST(ViewFinisher, CamerasHaveTheirOwnOutlines) {
 TEST(ViewFinisher, SourcesOfHardEdgesAreNoneInHolesOnly) {
   const ObjectScene scene;
   for (const HoleFilling holes :
-       {HoleFilling::kMirror, HoleFilling::kNone, HoleFilling::kInpaint, HoleFilling::kTexture}) {
+       {HoleFilling::kInterpolate, HoleFilling::kMirror, HoleFilling::kNone, HoleFilling::kInpaint,
+        HoleFilling::kTexture}) {
     std::array<int, 256> counts{};
     for (const double view_x : {0.5, 1.5, -0.5}) {
       const SynthesizedView view = scene.view({.holes = holes, .soft_edges = false}, view_x);

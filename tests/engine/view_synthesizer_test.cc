@@ -219,7 +219,8 @@ TEST(ViewSynthesizer, AnEmptyRowTakesTheNearest) {
   std::fill_n(map.row(1), 3, 0.0F);
   std::fill_n(map.row(4), 3, 0.0F);
   const Photograph photograph{std::move(image)};
-  for (const HoleFilling holes : {HoleFilling::kMirror, HoleFilling::kSpread, HoleFilling::kNone}) {
+  for (const HoleFilling holes : {HoleFilling::kInterpolate, HoleFilling::kMirror,
+                                  HoleFilling::kSpread, HoleFilling::kNone}) {
     SynthesizedView view;
     ViewSynthesizer({.holes = holes}, execution())
         .synthesize({photograph, photograph, map.view(), map.view()}, 0.5, view);

@@ -1,5 +1,5 @@
 // Third pass: a hole takes the surface on its background side, the end of smaller disparity along
-// the row, mirrored at the edge of the hole. Colours are copied, never mixed.
+// the row, mirrored at the edge of the hole. Colours are copied, never mixed; alpha 0 tells where.
 
 uniform sampler2D uColour;
 uniform highp usampler2D uDisparity;
@@ -91,5 +91,6 @@ void main() {
     }
   }
   oColour = texelFetch(uColour, position + ivec2(from, 0), 0);
+  oColour.a = from == 0 ? oColour.a : 0.0;
   oDisparity = texelFetch(uDisparity, position + ivec2(begin, 0), 0).r;
 }

@@ -23,6 +23,7 @@ class Renderer {
       warp: this.makeProgram(shaderText("warp.vert"), shaderText("warp.frag")),
       combine: this.makeProgram(screen, shaderText("combine.frag")),
       fill: this.makeProgram(screen, shaderText("fill.frag")),
+      interpolate: this.makeProgram(screen, shaderText("interpolate.frag")),
       soften: this.makeProgram(screen, shaderText("soften.frag")),
       outlines: this.makeProgram(screen, shaderText("outlines.frag")),
       rows: this.makeProgram(screen, shaderText("rows.frag")),
@@ -204,6 +205,9 @@ class Renderer {
     }]];
     if (this.scene.holes !== "none") {
       passes.push(["fill", {uMirror: this.scene.holes === "mirror", uFillsMixedPixels: softens}]);
+    }
+    if (this.scene.holes === "interpolate") {
+      passes.push(["interpolate", {}]);
     }
     if (softens) {
       passes.push([y === 0 ? "soften" : "outlines", warped]);
