@@ -29,9 +29,9 @@ void add_holes_setting(Settings& settings, HoleFilling& holes) {
        {"inpaint", HoleFilling::kInpaint},
        {"texture", HoleFilling::kTexture},
        {"none", HoleFilling::kNone}},
-      "Filling of areas that no image shows: weighted means of the background (interpolate); "
-      "background mirrored along the row (mirror), its border pixel repeated (spread), continued "
-      "from all sides (inpaint), copied in patches (texture); black (none)");
+      "How areas that no image shows are filled: means of the background (interpolate), its row "
+      "mirrored (mirror), its last pixel (spread), painting (inpaint), patches (texture), black "
+      "(none)");
 }
 
 void add_combining_settings(Settings& settings, SynthesisOptions& options) {

@@ -142,7 +142,7 @@ TEST(FilmFormats, WhatStatesNothingIsBt709) {
   // Of a film of BT.601 nobody knows which primaries: none are stated.
   const FilmColours sd = {.matrix = AVCOL_SPC_SMPTE170M};
   EXPECT_EQ(written_colours(sd, VideoCoding::kH264), sd);
-  EXPECT_EQ(to_text({}), "");
+  EXPECT_EQ(to_text(FilmFormat{}), "");
   EXPECT_EQ(to_text(kPq),
             "pixels 4:3, 10 bits, primaries bt2020, transfer smpte2084, matrix bt2020nc");
 }
