@@ -85,10 +85,12 @@ TEST_F(EvalCommand, ComparesSequencesOfViews) {
   mask.at(3, 4) = 255;
   for (int frame = 0; frame < 3; ++frame) {
     const std::string name = "/00000" + std::to_string(frame) + ".png";
-    write_grey((folder_ / "truth") + name, 20, 15, 100 + 20 * frame);
+    const auto grey = static_cast<std::uint8_t>(100 + 20 * frame);
+    write_grey((folder_ / "truth") + name, 20, 15, grey);
     write_mask((folder_ / "masks") + name, mask.view());
     if (frame > 0) {  // the first view is missing
-      write_grey((folder_ / "views") + name, 20, 15, 100 + 20 * frame + 6 * (frame - 1));
+      write_grey((folder_ / "views") + name, 20, 15,
+                 static_cast<std::uint8_t>(grey + 6 * (frame - 1)));
     }
   }
   const Words folders = {"--views", folder_ / "views", folder_ / "truth"};

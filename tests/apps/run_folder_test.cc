@@ -292,9 +292,10 @@ TEST_F(RunFolder, WhereThereIsNoRun) {
 TEST_F(RunFolder, FilesThatNoRunMadeAreNotReplacedUnasked) {
   fs::create_directories(out_ + "/disparity");
   write_file(out_ + "/disparity/000003.pfm", "mine");
-  for (const std::string& opening : {"", "--resume", "--force"}) {
-    expect_one_line(run(out_, opening.empty() ? Words{"--quiet"} : Words{"--quiet", opening}), 1,
-                    "run", "disparity/000003.pfm is there, and no run made it");
+  for (const Words& options :
+       {Words{"--quiet"}, Words{"--quiet", "--resume"}, Words{"--quiet", "--force"}}) {
+    expect_one_line(run(out_, options), 1, "run",
+                    "disparity/000003.pfm is there, and no run made it");
     EXPECT_EQ(read_file(out_ + "/disparity/000003.pfm"), "mine");
   }
   succeeds(run(out_, {"--overwrite"}));
