@@ -75,21 +75,19 @@ class FilmPageTest(unittest.TestCase):
         cls.browser = cls.enterClassContext(Browser())
 
     def open(self, page, address="", script=""):
-        tab = Tab(self.browser, "about:blank", width=400, height=400)
+        tab = Tab(self.browser, page.as_uri() + address, width=400, height=400, script=script)
         self.addCleanup(tab.close)
-        tab.call("Page.addScriptToEvaluateOnNewDocument", source=script)
-        tab.call("Page.navigate", url=page.as_uri() + address)
-        tab.evaluate("new Promise((resolve) => addEventListener('load', () => resolve()))")
         self.assertEqual(status_of(tab), "ready", (tab.text("message"), tab.complaints()))
         return tab
 
     def shows_frame(self, tab, number):
-        """Waits for it; returns what the page says of it."""
-        self.assertTrue(tab.evaluate(
+        """Waits for it; returns what the page says of it at that moment: a film goes on."""
+        return tab.evaluate(
             "new Promise((resolve) => { const look = () => {"
-            " if (document.getElementById('time-value').textContent"
-            f" === '{number}') {{ resolve(true); }} else {{ setTimeout(look, 5); }} }}; look(); }})"))
-        return "" if tab.evaluate("document.getElementById('message').hidden") else tab.text("message")
+            " const message = document.getElementById('message');"
+            f" if (document.getElementById('time-value').textContent === '{number}')"
+            " { resolve(message.hidden ? '' : message.textContent); }"
+            " else { setTimeout(look, 5); } }; look(); })")
 
     def test_views_of_a_frame_are_those_of_synth(self):
         frame = f"{5:06}"

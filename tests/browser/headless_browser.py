@@ -105,9 +105,10 @@ class Browser:
 
 
 class Tab:
-    """A page in a browser, and what it asked for and complained about since it was opened."""
+    """A page in a browser, and what it asked for and complained about since it was opened.
+    `script` runs before those of the page."""
 
-    def __init__(self, browser, address, width=800, height=600):
+    def __init__(self, browser, address, width=800, height=600, script=""):
         self.browser = browser
         self.target = browser.call("Target.createTarget", url="about:blank")["targetId"]
         self.session = browser.call("Target.attachToTarget", targetId=self.target,
@@ -116,6 +117,7 @@ class Tab:
             self.call(f"{domain}.enable")
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height,
                   deviceScaleFactor=1, mobile=False)
+        self.call("Page.addScriptToEvaluateOnNewDocument", source=script)
         self.call("Page.navigate", url=address)
         self.evaluate("new Promise((resolve) => document.readyState === 'complete' ? resolve(true)"
                       " : addEventListener('load', () => setTimeout(() => resolve(true))))")
