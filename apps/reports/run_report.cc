@@ -18,6 +18,21 @@
 namespace vantage::apps {
 namespace {
 
+/// Leaves nothing in `value` for its destructor, which allocates and must not fail.
+void empty_without_memory(SettingValue& value) noexcept {
+  if (auto* const object = value.get_ptr<SettingValue::object_t*>()) {
+    for (auto& member : *object) {
+      empty_without_memory(member.second);
+    }
+    object->clear();
+  } else if (auto* const array = value.get_ptr<SettingValue::array_t*>()) {
+    for (SettingValue& element : *array) {
+      empty_without_memory(element);
+    }
+    array->clear();
+  }
+}
+
 /// A memory figure of this process; 0 if the system does not provide it.
 std::size_t process_bytes(std::string_view name) {
   std::ifstream status("/proc/self/status");
@@ -45,6 +60,12 @@ RunReport::RunReport(std::string command, SettingValue settings)
     : command_(std::move(command)),
       settings_(std::move(settings)),
       bytes_at_start_(process_bytes("VmRSS:")) {}
+
+RunReport::~RunReport() {
+  for (SettingValue* value : {&settings_, &results_, &more_results_}) {
+    empty_without_memory(*value);
+  }
+}
 
 void RunReport::start_trace(const std::string& path) {
   if (!path.empty()) {

@@ -26,6 +26,9 @@ namespace vantage::apps {
 class RunReport {
  public:
   RunReport(std::string command, SettingValue settings);
+  RunReport(const RunReport&) = delete;
+  RunReport& operator=(const RunReport&) = delete;
+  ~RunReport();
   [[nodiscard]] const std::string& command() const { return command_; }
   /// Replaces the settings, for example after an input has determined some.
   void set_settings(SettingValue settings) { settings_ = std::move(settings); }
