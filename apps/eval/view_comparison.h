@@ -18,7 +18,7 @@ Mask white_pixels(const Photograph& photograph, const std::string& path);
 
 /// New views beside photographs of the same places.
 struct ViewComparison {
-  /// Of all frames together; SSIM is the mean of the frames, weighted by their counted pixels.
+  /// Of all frames together. SSIM: the mean over frames, each weighted by its number of pixels.
   ViewScores scores;
   double immersive_psnr_db = 0;  ///< likewise
   ViewFlicker flicker;

@@ -54,7 +54,8 @@ class ViewFlicker {
   void add(const Photograph& view, const Photograph& truth,
            std::optional<ImageView<const std::uint8_t>> mask = {});
 
-  /// Of all pixels, of the masked ones; empty without two frames or such pixels.
+  /// The mean over all pixels, and over masked pixels only. None before the second frame, or where
+  /// no pixel counts.
   [[nodiscard]] std::optional<double> mean_levels() const { return mean_of(0); }
   [[nodiscard]] std::optional<double> masked_mean_levels() const { return mean_of(1); }
 

@@ -31,8 +31,8 @@ constexpr const char* kVideoContainers =
     "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi,mpegts,mpeg,mpegvideo,m4v,h264,hevc,av1,obu,ivf,"
     "vc1,mjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
 
-/// Decoders of what cameras, recorders and editors of films have written: FFmpeg has 500 more, many
-/// of games and of formats that nobody has fuzzed for long.
+/// Decoders of what cameras, recorders and editing programs write. FFmpeg has about 500 more, many
+/// of them for old games; few people test those against damaged files.
 constexpr const char* kFootageDecoders =
     "h264,hevc,av1,libdav1d,libaom-av1,libgav1,vp8,vp9,libvpx,libvpx-vp9,mpeg1video,mpeg2video,"
     "mpegvideo,mpeg4,msmpeg4v1,msmpeg4v2,msmpeg4,h261,h263,h263i,h263p,flv,vp6,vp6a,vp6f,wmv1,wmv2,"

@@ -22,7 +22,8 @@ mode_t mode_of(int descriptor) {
   return ::fstat(descriptor, &status) == 0 ? status.st_mode : 0;
 }
 
-/// O_NONBLOCK is a property of what is open, which other processes share: so a pipe is opened anew.
+/// Processes that share an open pipe share its O_NONBLOCK flag too. The pipe is opened a second
+/// time, so that only this program sees the flag.
 FileDescriptor reopened(int descriptor) {
   if (!S_ISFIFO(mode_of(descriptor))) {
     return FileDescriptor(-1);
