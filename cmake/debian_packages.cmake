@@ -52,7 +52,7 @@ endif()
 configure_file(cmake/debian/changelog.in changelog @ONLY)
 execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
 
-packages_of(late_libraries opencv_imgcodecs opencv_video ${TIFF_LIBRARY} ${libav_codecs_LINK_LIBRARIES})
+packages_of(late_libraries opencv_imgcodecs opencv_video ${TIFF_LIBRARY} ${libav_LINK_LIBRARIES})
 # Only boards with markers and --show need them, and they bring a window system.
 packages_of(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS opencv_aruco)
 string(APPEND CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
@@ -64,7 +64,7 @@ disparity maps and new views, on all cores of ordinary processors. Results do
 not depend on the number of threads.")
 debian_package(development libvantage-dev libdevel
   "libtbb-dev, libopencv-dev, libeigen3-dev, libfmt-dev, libhwy-dev, libhwloc-dev, libdeflate-dev, \
-libjpeg-dev, libpng-dev, libswscale-dev, libswresample-dev, libavutil-dev, pkg-config, ${late_libraries}"
+libjpeg-dev, libpng-dev, pkg-config, ${late_libraries}"
   "C++ library of the stereo engine Vantage"
   "Static libraries, headers and the CMake package Vantage: find_package(Vantage)
 gives the target vantage::engine.")

@@ -6,10 +6,13 @@
 #include <fstream>
 #include <opencv2/core/utility.hpp>
 
+#include "engine/error.h"
+#include "engine/late_library.h"
 #include "scheduler/tbb_executor.h"
 
 extern "C" {
 #include <libavutil/avutil.h>
+#include <libavutil/macros.h>
 }
 
 namespace vantage {
@@ -40,8 +43,16 @@ BuildInfo build_info() {
 #else
   const std::string compiler = fmt::format("GCC {}", __VERSION__);
 #endif
-  return {VANTAGE_VERSION, compiler, cv::getVersionString(), scheduler::tbb_version(),
-          av_version_info()};
+  return {VANTAGE_VERSION, compiler, cv::getVersionString(), scheduler::tbb_version()};
+}
+
+std::string ffmpeg_version() {
+  try {
+    const LateLibrary library("libavutil.so." AV_STRINGIFY(LIBAVUTIL_VERSION_MAJOR), "no version");
+    return library.function<decltype(&::av_version_info)>("av_version_info")();
+  } catch (const Error&) {
+    return "";
+  }
 }
 
 SystemInfo system_info() {

@@ -10,10 +10,13 @@ struct BuildInfo {
   std::string compiler;  ///< "GCC 12.2.0"
   std::string opencv;    ///< version in use
   std::string tbb;       ///< version in use
-  std::string ffmpeg;    ///< version in use
 };
 
 BuildInfo build_info();
+
+/// Version of the FFmpeg in use, which is opened for it; empty if there is none. Thread rule: may
+/// be used concurrently.
+std::string ffmpeg_version();
 
 /// What this process runs on. A field is empty if the system does not tell.
 struct SystemInfo {

@@ -23,11 +23,12 @@ void print_table(const BuildInfo& build, const SystemInfo& system,
                  const scheduler::Topology& topology) {
   const scheduler::Machine& machine = topology.machine;
   constexpr std::size_t kKib = 1024;
+  const std::string ffmpeg = ffmpeg_version();
   const std::optional<double> quota = scheduler::read_system_limits().processors;
   fmt::print("Vantage            {}\n", build.version);
   fmt::print("compiler           {}\n", build.compiler);
   fmt::print("libraries          OpenCV {}, TBB {}, FFmpeg {}\n", build.opencv, build.tbb,
-             build.ffmpeg);
+             ffmpeg.empty() ? "none" : ffmpeg);
   fmt::print("system             {}, {}\n", system.distribution, system.kernel);
   fmt::print("processor          {}\n", system.processor);
   fmt::print("instruction sets   {} in use\n", instruction_set_in_use());
@@ -63,7 +64,7 @@ SettingValue machine_json(const BuildInfo& build, const SystemInfo& system,
           {"compiler", build.compiler},
           {"opencv", build.opencv},
           {"tbb", build.tbb},
-          {"ffmpeg", build.ffmpeg},
+          {"ffmpeg", ffmpeg_version()},
           {"distribution", system.distribution},
           {"kernel", system.kernel},
           {"processor", system.processor},

@@ -7,17 +7,11 @@
 
 #include "engine/quoted_text.h"
 
-extern "C" {
-#include <libavutil/base64.h>
-}
-
 namespace vantage {
 namespace {
 
-// The library counts in int. Blocks of complete groups can be joined.
-constexpr std::size_t kBlockGroups = std::size_t{1} << 20;
-constexpr std::size_t kGroupBytes = 3;
-constexpr std::size_t kGroupLetters = 4;
+constexpr char kBase64Letters[] =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 constexpr std::size_t kEscapeLength = 4;  // \xHH
 
@@ -40,20 +34,21 @@ int escaped_byte(std::string_view text) {
 }  // namespace
 
 std::string encode_base64(std::span<const std::uint8_t> bytes) {
-  const std::size_t groups = (bytes.size() + kGroupBytes - 1) / kGroupBytes;
-  std::string text(groups * kGroupLetters + 1, '\0');  // the library terminates each block with a
-                                                       // zero
+  constexpr std::size_t kGroupBytes = 3;
+  constexpr std::size_t kGroupLetters = 4;
+  std::string text((bytes.size() + kGroupBytes - 1) / kGroupBytes * kGroupLetters, '=');
   std::size_t letters = 0;
-  while (!bytes.empty()) {
-    const auto block = bytes.first(std::min(bytes.size(), kBlockGroups * kGroupBytes));
-    const std::size_t block_letters =
-        (block.size() + kGroupBytes - 1) / kGroupBytes * kGroupLetters;
-    av_base64_encode(text.data() + letters, static_cast<int>(block_letters + 1), block.data(),
-                     static_cast<int>(block.size()));
-    letters += block_letters;
-    bytes = bytes.subspan(block.size());
+  for (std::size_t first = 0; first < bytes.size(); first += kGroupBytes) {
+    const std::size_t count = std::min(kGroupBytes, bytes.size() - first);
+    std::uint32_t group = 0;
+    for (std::size_t i = 0; i < kGroupBytes; ++i) {
+      group = group << 8 | (i < count ? bytes[first + i] : 0U);
+    }
+    for (std::size_t i = 0; i <= count; ++i) {
+      text[letters + i] = kBase64Letters[group >> (18 - 6 * i) & 63];
+    }
+    letters += kGroupLetters;
   }
-  text.resize(letters);
   return text;
 }
 

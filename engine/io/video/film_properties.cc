@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "engine/io/video/coded_units.h"
+#include "engine/io/video/libav_functions.h"
 #include "engine/io/video/video_decoder.h"
 #include "engine/io/video/video_structure.h"
 
@@ -33,7 +34,8 @@ const std::uint8_t* side_data(const AVStream& stream, AVPacketSideDataType type)
 }
 
 const std::uint8_t* side_data(const AVFrame* frame, AVFrameSideDataType type) {
-  const AVFrameSideData* found = frame == nullptr ? nullptr : av_frame_get_side_data(frame, type);
+  const AVFrameSideData* found =
+      frame == nullptr ? nullptr : libav().av_frame_get_side_data(frame, type);
   return found == nullptr ? nullptr : found->data;
 }
 
@@ -79,7 +81,7 @@ void take_stereo(const AVStereo3D& stereo, std::string_view where, double aspect
 }
 
 std::string lower_case_tag(const AVStream& stream, const char* name) {
-  const AVDictionaryEntry* entry = av_dict_get(stream.metadata, name, nullptr, 0);
+  const AVDictionaryEntry* entry = libav().av_dict_get(stream.metadata, name, nullptr, 0);
   std::string text = entry == nullptr ? "" : entry->value;
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "engine/error.h"
+#include "engine/io/video/libav_functions.h"
 #include "engine/io/video/libav_scaler.h"
 
 extern "C" {
@@ -153,7 +154,7 @@ void FrameToPhotograph::prepare(const AVFrame& frame) {
     source_ = source;
     return;
   }
-  if (sws_isSupportedInput(static_cast<AVPixelFormat>(frame.format)) == 0) {
+  if (libav().sws_isSupportedInput(static_cast<AVPixelFormat>(frame.format)) == 0) {
     throw Error(fmt::format("its pixel format {} is not supported", format.name));
   }
   if (has_chroma_) {
@@ -205,8 +206,8 @@ bool FrameToPhotograph::convert_halves(const AVFrame& frame, const PictureHalves
 
 void FrameToPhotograph::scale(const AVFrame& frame, std::uint8_t* const* planes,
                               const int* pitches) {
-  if (sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, planes, pitches) !=
-      frame.height) {
+  if (libav().sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, planes,
+                        pitches) != frame.height) {
     throw Error("its pixel format is not supported");
   }
 }

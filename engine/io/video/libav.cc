@@ -14,13 +14,7 @@
 #include "engine/io/video/video_structure.h"
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
-#include <libavutil/audio_fifo.h>
-#include <libavutil/avstring.h>
 #include <libavutil/macros.h>
-#include <libswresample/swresample.h>
-#include <libswscale/swscale.h>
 }
 
 namespace vantage {
@@ -71,15 +65,15 @@ class ProbeOptions {
  public:
   explicit ProbeOptions(unsigned streams) : options_(streams, nullptr) {
     for (AVDictionary*& option : options_) {
-      av_dict_set_int(&option, "max_pixels", max_image_pixels(), 0);
-      av_dict_set_int(&option, "threads", 1, 0);
+      libav().av_dict_set_int(&option, "max_pixels", max_image_pixels(), 0);
+      libav().av_dict_set_int(&option, "threads", 1, 0);
     }
   }
   ProbeOptions(const ProbeOptions&) = delete;
   ProbeOptions& operator=(const ProbeOptions&) = delete;
   ~ProbeOptions() {
     for (AVDictionary*& option : options_) {
-      av_dict_free(&option);
+      libav().av_dict_free(&option);
     }
   }
   AVDictionary** data() { return options_.empty() ? nullptr : options_.data(); }
@@ -98,27 +92,32 @@ AVStream* find_stream(AVFormatContext& input, AVMediaType type) {
 // The major versions of the headers: FFmpeg changes types only between major versions.
 LibavFunctions::LibavFunctions()
     : format_("libavformat.so." AV_STRINGIFY(LIBAVFORMAT_VERSION_MAJOR), kWithoutThem),
-      codec_("libavcodec.so." AV_STRINGIFY(LIBAVCODEC_VERSION_MAJOR), kWithoutThem) {}
+      codec_("libavcodec.so." AV_STRINGIFY(LIBAVCODEC_VERSION_MAJOR), kWithoutThem),
+      resample_("libswresample.so." AV_STRINGIFY(LIBSWRESAMPLE_VERSION_MAJOR), kWithoutThem),
+      scale_("libswscale.so." AV_STRINGIFY(LIBSWSCALE_VERSION_MAJOR), kWithoutThem),
+      util_("libavutil.so." AV_STRINGIFY(LIBAVUTIL_VERSION_MAJOR), kWithoutThem) {}
 
 const LibavFunctions& libav() {
   static const LibavFunctions functions;
   return functions;
 }
 
-void LibavFree::operator()(AVAudioFifo* samples) const noexcept { av_audio_fifo_free(samples); }
+void LibavFree::operator()(AVAudioFifo* samples) const noexcept {
+  libav().av_audio_fifo_free(samples);
+}
 void LibavFree::operator()(AVCodecContext* codec) const noexcept {
   libav().avcodec_free_context(&codec);
 }
 void LibavFree::operator()(AVFormatContext* input) const noexcept {
   libav().avformat_close_input(&input);
 }
-void LibavFree::operator()(AVFrame* frame) const noexcept { av_frame_free(&frame); }
+void LibavFree::operator()(AVFrame* frame) const noexcept { libav().av_frame_free(&frame); }
 void LibavFree::operator()(AVPacket* packet) const noexcept { libav().av_packet_free(&packet); }
-void LibavFree::operator()(SwrContext* resampler) const noexcept { swr_free(&resampler); }
-void LibavFree::operator()(SwsContext* scaler) const noexcept { sws_freeContext(scaler); }
+void LibavFree::operator()(SwrContext* resampler) const noexcept { libav().swr_free(&resampler); }
+void LibavFree::operator()(SwsContext* scaler) const noexcept { libav().sws_freeContext(scaler); }
 
 LibavFrame make_libav_frame() {
-  LibavFrame frame(av_frame_alloc());
+  LibavFrame frame(libav().av_frame_alloc());
   if (frame == nullptr) {
     throw std::bad_alloc();
   }
@@ -126,7 +125,7 @@ LibavFrame make_libav_frame() {
 }
 
 LibavFrame another_reference(const AVFrame& frame) {
-  LibavFrame reference(av_frame_clone(&frame));
+  LibavFrame reference(libav().av_frame_clone(&frame));
   if (reference == nullptr) {
     throw std::bad_alloc();
   }
@@ -154,7 +153,7 @@ std::string libav_message(int error) {
     return "invalid data found";  // several decoders return −1
   }
   std::array<char, AV_ERROR_MAX_STRING_SIZE> buffer{};
-  av_strerror(error, buffer.data(), buffer.size());
+  libav().av_strerror(error, buffer.data(), buffer.size());
   std::string message(buffer.data());
   if (!message.empty()) {
     message[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(message[0])));
@@ -164,7 +163,7 @@ std::string libav_message(int error) {
 
 void silence_libav() {
   static const bool silent = [] {
-    av_log_set_level(AV_LOG_QUIET);
+    libav().av_log_set_level(AV_LOG_QUIET);
     return true;
   }();
   (void)silent;
@@ -173,14 +172,14 @@ void silence_libav() {
 void limit_to_footage(AVFormatContext& input) {
   constexpr unsigned kMaxStreams = 100;
   constexpr std::int64_t kProbedBytes = 5'000'000;
-  input.format_whitelist = av_strdup(kVideoContainers);
-  input.codec_whitelist = av_strdup(kFootageDecoders);
+  input.format_whitelist = libav().av_strdup(kVideoContainers);
+  input.codec_whitelist = libav().av_strdup(kFootageDecoders);
   input.max_streams = kMaxStreams;
   input.probesize = kProbedBytes;
 }
 
 bool is_for_footage(const AVCodec& decoder) {
-  return av_match_list(decoder.name, kFootageDecoders, ',') > 0;
+  return libav().av_match_list(decoder.name, kFootageDecoders, ',') > 0;
 }
 
 LibavInput open_media_file(const fs::path& path) {
@@ -198,7 +197,7 @@ LibavInput open_media_file(const fs::path& path) {
     throw std::bad_alloc();
   }
   limit_to_footage(*opened);
-  opened->protocol_whitelist = av_strdup("file");
+  opened->protocol_whitelist = libav().av_strdup("file");
   // "file:" keeps names with a colon from being parsed as URLs. On failure `opened` is freed.
   const std::string address = "file:" + path.string();
   int result = libav().avformat_open_input(&opened, address.c_str(), nullptr, nullptr);

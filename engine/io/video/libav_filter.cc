@@ -5,6 +5,7 @@
 #include <new>
 
 #include "engine/error.h"
+#include "engine/io/video/libav_functions.h"
 #include "engine/late_library.h"
 
 extern "C" {
@@ -55,7 +56,7 @@ AVFilterInOut* end_of_chain(const char* name, AVFilterContext* filter) {
   if (end == nullptr) {
     throw std::bad_alloc();
   }
-  end->name = av_strdup(name);
+  end->name = libav().av_strdup(name);
   end->filter_ctx = filter;
   return end;
 }
@@ -96,7 +97,7 @@ LibavFilter::LibavFilter(const std::string& chain, const AVFrame& first)
 }
 
 void LibavFilter::put(const AVFrame& frame) {
-  const LibavFrame numbered(av_frame_clone(&frame));
+  const LibavFrame numbered(libav().av_frame_clone(&frame));
   if (numbered == nullptr) {
     throw std::bad_alloc();
   }

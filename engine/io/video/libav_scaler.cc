@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/io/video/libav_functions.h"
 
 extern "C" {
 #include <libavutil/frame.h>
@@ -38,7 +39,8 @@ ChromaPosition chroma_position(int location, const AVPixFmtDescriptor& format) {
 }
 
 const AVPixFmtDescriptor& describe_pixel_format(int format) {
-  const AVPixFmtDescriptor* description = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(format));
+  const AVPixFmtDescriptor* description =
+      libav().av_pix_fmt_desc_get(static_cast<AVPixelFormat>(format));
   if (description == nullptr) {
     throw Error("its pixel format is unknown");
   }
@@ -46,7 +48,7 @@ const AVPixFmtDescriptor& describe_pixel_format(int format) {
 }
 
 LibavScaler make_scaler(const ScalerOptions& options) {
-  LibavScaler scaler(sws_alloc_context());
+  LibavScaler scaler(libav().sws_alloc_context());
   if (scaler == nullptr) {
     throw std::bad_alloc();
   }
@@ -66,16 +68,16 @@ LibavScaler make_scaler(const ScalerOptions& options) {
       {"sws_flags", kScalerFlags},
   }};
   for (const auto& [name, value] : settings) {
-    av_opt_set_int(scaler.get(), name, value, 0);
+    libav().av_opt_set_int(scaler.get(), name, value, 0);
   }
-  const int* coefficients = sws_getCoefficients(options.matrix);
+  const int* coefficients = libav().sws_getCoefficients(options.matrix);
   constexpr int kOne = 1 << 16;
-  if (sws_init_context(scaler.get(), nullptr, nullptr) < 0) {
+  if (libav().sws_init_context(scaler.get(), nullptr, nullptr) < 0) {
     throw Error("its pixel format cannot be converted");
   }
   // Fails if there is nothing to set: between two kinds of RGB.
-  sws_setColorspaceDetails(scaler.get(), coefficients, options.source_full_range ? 1 : 0,
-                           coefficients, options.target_full_range ? 1 : 0, 0, kOne, kOne);
+  libav().sws_setColorspaceDetails(scaler.get(), coefficients, options.source_full_range ? 1 : 0,
+                                   coefficients, options.target_full_range ? 1 : 0, 0, kOne, kOne);
   return scaler;
 }
 
@@ -84,7 +86,7 @@ LibavFrame make_picture(int width, int height, int format) {
   frame->width = width;
   frame->height = height;
   frame->format = format;
-  if (av_frame_get_buffer(frame.get(), 0) < 0) {
+  if (libav().av_frame_get_buffer(frame.get(), 0) < 0) {
     throw std::bad_alloc();
   }
   return frame;
@@ -94,8 +96,9 @@ PicturePool::PicturePool(int width, int height, int format)
     : width_(width), height_(height), format_(format) {}
 
 LibavFrame PicturePool::make() {
-  const auto idle = std::ranges::find_if(
-      frames_, [](const LibavFrame& frame) { return av_frame_is_writable(frame.get()) != 0; });
+  const auto idle = std::ranges::find_if(frames_, [](const LibavFrame& frame) {
+    return libav().av_frame_is_writable(frame.get()) != 0;
+  });
   if (idle != frames_.end()) {
     return another_reference(**idle);
   }

@@ -50,7 +50,7 @@ std::string side_data_text(const AVStream& stream, AVPacketSideDataType of_strea
     }
   }
   const AVFrameSideData* const data =
-      frame == nullptr ? nullptr : av_frame_get_side_data(frame, of_frame);
+      frame == nullptr ? nullptr : libav().av_frame_get_side_data(frame, of_frame);
   return data != nullptr && data->size >= sizeof(T)
              ? text_of(*reinterpret_cast<const T*>(data->data))
              : "";
@@ -87,7 +87,7 @@ FilmFormat stated_format(const AVStream& stream, const AVFrame* frame) {
   colours.matrix = frame != nullptr ? frame->colorspace : parameters.color_space;
   const int range = frame != nullptr ? frame->color_range : parameters.color_range;
   if (const AVPixFmtDescriptor* pixels =
-          av_pix_fmt_desc_get(static_cast<AVPixelFormat>(pixel_format))) {
+          libav().av_pix_fmt_desc_get(static_cast<AVPixelFormat>(pixel_format))) {
     const bool is_rgb = (pixels->flags & AV_PIX_FMT_FLAG_RGB) != 0;
     colours.bits = pixels->comp[0].depth;
     colours.has_full_range = !is_rgb && (range == AVCOL_RANGE_JPEG ||
@@ -125,11 +125,12 @@ std::string to_text(const FilmFormat& format) {
     }
   };
   add_name("primaries", colours.primaries,
-           av_color_primaries_name(static_cast<AVColorPrimaries>(colours.primaries)));
-  add_name("transfer", colours.transfer,
-           av_color_transfer_name(static_cast<AVColorTransferCharacteristic>(colours.transfer)));
+           libav().av_color_primaries_name(static_cast<AVColorPrimaries>(colours.primaries)));
+  add_name(
+      "transfer", colours.transfer,
+      libav().av_color_transfer_name(static_cast<AVColorTransferCharacteristic>(colours.transfer)));
   add_name("matrix", colours.matrix,
-           av_color_space_name(static_cast<AVColorSpace>(colours.matrix)));
+           libav().av_color_space_name(static_cast<AVColorSpace>(colours.matrix)));
   return text;
 }
 

@@ -53,15 +53,16 @@ void register_cameras() {
 
 /// FFmpeg's options of raw frames, and of modes of a camera.
 void set_shape(const RawVideoShape& raw, FrameRate rate, AVDictionary** options) {
-  if (av_get_pix_fmt(raw.pixel_format.c_str()) == AV_PIX_FMT_NONE) {
+  if (libav().av_get_pix_fmt(raw.pixel_format.c_str()) == AV_PIX_FMT_NONE) {
     throw UsageError(
         fmt::format("raw-video has the pixel format '{}', expected one of FFmpeg's such as rgb24, "
                     "gray, yuv420p",
                     raw.pixel_format));
   }
-  av_dict_set(options, "video_size", fmt::format("{}x{}", raw.width_px, raw.height_px).c_str(), 0);
-  av_dict_set(options, "pixel_format", raw.pixel_format.c_str(), 0);
-  av_dict_set(options, "framerate", to_string(rate).c_str(), 0);
+  libav().av_dict_set(options, "video_size",
+                      fmt::format("{}x{}", raw.width_px, raw.height_px).c_str(), 0);
+  libav().av_dict_set(options, "pixel_format", raw.pixel_format.c_str(), 0);
+  libav().av_dict_set(options, "framerate", to_string(rate).c_str(), 0);
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ StreamInput::~StreamInput() {
   if (kind_ == Kind::kTcp) {
     libav().avio_closep(&io_);
   } else if (io_ != nullptr) {
-    av_freep(&io_->buffer);  // libav may have exchanged it
+    libav().av_freep(&io_->buffer);  // libav may have exchanged it
     libav().avio_context_free(&io_);
   }
   if (descriptor_ > STDIN_FILENO) {
@@ -118,13 +119,13 @@ void StreamInput::open_pipe() {
     }
     (void)::fcntl(descriptor_, F_SETPIPE_SZ, kPipeBytes);
   }
-  auto* const buffer = static_cast<unsigned char*>(av_malloc(kInputBufferBytes));
+  auto* const buffer = static_cast<unsigned char*>(libav().av_malloc(kInputBufferBytes));
   if (buffer != nullptr) {
     io_ =
         libav().avio_alloc_context(buffer, kInputBufferBytes, 0, this, read_pipe, nullptr, nullptr);
   }
   if (io_ == nullptr) {
-    av_free(buffer);
+    libav().av_free(buffer);
     throw std::bad_alloc();
   }
 }
@@ -177,10 +178,10 @@ std::string StreamInput::problem(int result) const {
 void StreamInput::connect() {
   wait_at_most(kConnecting);
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "protocol_whitelist", "tcp", 0);
+  libav().av_dict_set(&options, "protocol_whitelist", "tcp", 0);
   const AVIOInterruptCB callback = {is_over, this};
   const int result = libav().avio_open2(&io_, name_.c_str(), AVIO_FLAG_READ, &callback, &options);
-  av_dict_free(&options);
+  libav().av_dict_free(&options);
   if (is_stopped()) {
     throw scheduler::Interrupted();
   }
@@ -201,28 +202,29 @@ LibavInput StreamInput::open(const std::optional<RawVideoShape>& raw, FrameRate 
     format = libav().av_find_input_format("video4linux2");
   } else if (kind_ == Kind::kRtsp) {
     format = libav().av_find_input_format("rtsp");
-    av_dict_set(&options, "rtsp_flags", "prefer_tcp", 0);  // which loses nothing
+    libav().av_dict_set(&options, "rtsp_flags", "prefer_tcp", 0);  // which loses nothing
   } else if (raw) {
     format = libav().av_find_input_format("rawvideo");
   }
   AVFormatContext* opened = libav().avformat_alloc_context();
   if (opened == nullptr) {
-    av_dict_free(&options);
+    libav().av_dict_free(&options);
     throw std::bad_alloc();
   }
   opened->pb = io_;
   opened->interrupt_callback = {is_over, this};
   limit_to_footage(*opened);
   if (format != nullptr) {  // what is no container is chosen here, not by its bytes
-    av_freep(&opened->format_whitelist);
+    libav().av_freep(&opened->format_whitelist);
   }
-  opened->protocol_whitelist = av_strdup(kind_ == Kind::kRtsp ? "rtsp,rtp,udp,tcp" : kNothing);
+  opened->protocol_whitelist =
+      libav().av_strdup(kind_ == Kind::kRtsp ? "rtsp,rtp,udp,tcp" : kNothing);
   // Rates are those that are stated: frames are not awaited to measure them.
   opened->fps_probe_size = 0;
   kind_ == Kind::kRtsp ? wait_at_most(kConnecting) : allow_silence();
   int result =
       libav().avformat_open_input(&opened, connects ? name_.c_str() : "", format, &options);
-  av_dict_free(&options);
+  libav().av_dict_free(&options);
   LibavInput input(result < 0 ? nullptr : opened);
   const AVStream* const stream = result < 0 ? nullptr : find_video_stream(*input);
   // Where the header says it all, nothing more is awaited.

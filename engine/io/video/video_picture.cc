@@ -10,6 +10,7 @@
 #include "engine/error.h"
 #include "engine/image/stereo_packing.h"
 #include "engine/io/video/libav_filter.h"
+#include "engine/io/video/libav_functions.h"
 #include "engine/io/video/libav_scaler.h"
 
 extern "C" {
@@ -53,7 +54,8 @@ double step_of(AVVideoEncParamsType type, double qp) {
 /// and -4, and VP9.
 LossyCoding coding_of_frame(const AVFrame& frame, const std::string& lossy_codec) {
   LossyCoding coding{.codec = lossy_codec};
-  const AVFrameSideData* exported = av_frame_get_side_data(&frame, AV_FRAME_DATA_VIDEO_ENC_PARAMS);
+  const AVFrameSideData* exported =
+      libav().av_frame_get_side_data(&frame, AV_FRAME_DATA_VIDEO_ENC_PARAMS);
   if (exported == nullptr) {
     return coding;
   }

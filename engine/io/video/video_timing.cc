@@ -173,7 +173,7 @@ std::optional<FrameRate> to_frame_rate(AVRational rate) {
   int numerator = 0;
   int denominator = 0;
   constexpr int kLargestTerm = 1'000'000;
-  av_reduce(&numerator, &denominator, rate.num, rate.den, kLargestTerm);
+  libav().av_reduce(&numerator, &denominator, rate.num, rate.den, kLargestTerm);
   if (numerator < 1 || denominator < 1 || numerator / denominator >= 1000) {
     return std::nullopt;
   }

@@ -50,8 +50,8 @@ struct SoundFormat {
   explicit SoundFormat(const AVFrame& frame)
       : sample_format(frame.format), rate(frame.sample_rate) {
     if (frame.ch_layout.order == AV_CHANNEL_ORDER_UNSPEC) {
-      av_channel_layout_default(&layout, frame.ch_layout.nb_channels);
-    } else if (av_channel_layout_copy(&layout, &frame.ch_layout) < 0) {
+      libav().av_channel_layout_default(&layout, frame.ch_layout.nb_channels);
+    } else if (libav().av_channel_layout_copy(&layout, &frame.ch_layout) < 0) {
       throw std::bad_alloc();
     }
   }
@@ -60,11 +60,11 @@ struct SoundFormat {
     swap(other);
     return *this;
   }
-  ~SoundFormat() { av_channel_layout_uninit(&layout); }
+  ~SoundFormat() { libav().av_channel_layout_uninit(&layout); }
 
   [[nodiscard]] bool equals(const SoundFormat& other) const {
     return sample_format == other.sample_format && rate == other.rate &&
-           av_channel_layout_compare(&layout, &other.layout) == 0;
+           libav().av_channel_layout_compare(&layout, &other.layout) == 0;
   }
 
  private:
@@ -142,7 +142,7 @@ void EncodedSound::open_encoder() {
   }
   encoder_ = make_codec(codec);
   const int channels = std::min(decoder_->ch_layout.nb_channels, 2);
-  av_channel_layout_default(&encoder_->ch_layout, channels);
+  libav().av_channel_layout_default(&encoder_->ch_layout, channels);
   encoder_->sample_rate =
       encodes_sample_rate(*codec, decoder_->sample_rate) ? decoder_->sample_rate : kUsualSampleRate;
   encoder_->sample_fmt = AV_SAMPLE_FMT_FLTP;
@@ -155,7 +155,7 @@ void EncodedSound::open_encoder() {
   }
   samples_of_part_ = std::llround(input_.length_seconds() * encoder_->sample_rate);
   parameters_ = libav().avcodec_parameters_alloc();
-  queue_.reset(av_audio_fifo_alloc(AV_SAMPLE_FMT_FLTP, channels, encoder_->frame_size));
+  queue_.reset(libav().av_audio_fifo_alloc(AV_SAMPLE_FMT_FLTP, channels, encoder_->frame_size));
   if (parameters_ == nullptr || queue_ == nullptr ||
       libav().avcodec_parameters_from_context(parameters_, encoder_.get()) < 0) {
     throw std::bad_alloc();
@@ -171,16 +171,16 @@ void EncodedSound::follow_format(const AVFrame& frame) {
     queue_samples(nullptr);
   }
   SwrContext* resampler = nullptr;
-  int result = swr_alloc_set_opts2(
+  int result = libav().swr_alloc_set_opts2(
       &resampler, &encoder_->ch_layout, AV_SAMPLE_FMT_FLTP, encoder_->sample_rate, &format.layout,
       static_cast<AVSampleFormat>(format.sample_format), format.rate, 0, nullptr);
   resampler_.reset(resampler);
   if (result >= 0 && encoder_->ch_layout.nb_channels == 1) {
     // Mixing two channels to one must not raise the level.
-    result = av_opt_set_double(resampler, "rematrix_maxval", 1, 0);
+    result = libav().av_opt_set_double(resampler, "rematrix_maxval", 1, 0);
   }
   if (result >= 0) {
-    result = swr_init(resampler_.get());
+    result = libav().swr_init(resampler_.get());
   }
   if (result < 0) {
     input_.fail(libav_message(result));
@@ -205,10 +205,10 @@ bool EncodedSound::next() {
 }
 
 void EncodedSound::feed_encoder() {
-  while (!decoded_all_ && av_audio_fifo_size(queue_.get()) < encoder_->frame_size) {
+  while (!decoded_all_ && libav().av_audio_fifo_size(queue_.get()) < encoder_->frame_size) {
     decoded_all_ = !decode_more();
   }
-  const int samples = std::min(av_audio_fifo_size(queue_.get()), encoder_->frame_size);
+  const int samples = std::min(libav().av_audio_fifo_size(queue_.get()), encoder_->frame_size);
   if (samples == 0) {
     libav().avcodec_send_frame(encoder_.get(), nullptr);
     return;
@@ -217,11 +217,11 @@ void EncodedSound::feed_encoder() {
   frame->format = AV_SAMPLE_FMT_FLTP;
   frame->sample_rate = encoder_->sample_rate;
   frame->nb_samples = samples;
-  if (av_channel_layout_copy(&frame->ch_layout, &encoder_->ch_layout) < 0 ||
-      av_frame_get_buffer(frame.get(), 0) < 0) {
+  if (libav().av_channel_layout_copy(&frame->ch_layout, &encoder_->ch_layout) < 0 ||
+      libav().av_frame_get_buffer(frame.get(), 0) < 0) {
     throw std::bad_alloc();
   }
-  av_audio_fifo_read(queue_.get(), reinterpret_cast<void**>(frame->extended_data), samples);
+  libav().av_audio_fifo_read(queue_.get(), reinterpret_cast<void**>(frame->extended_data), samples);
   frame->pts = next_to_encode_;
   next_to_encode_ += samples;
   if (const int result = libav().avcodec_send_frame(encoder_.get(), frame.get()); result < 0) {
@@ -261,18 +261,18 @@ bool EncodedSound::decode_more() {
 
 void EncodedSound::queue_samples(const AVFrame* frame) {
   const int capacity =
-      swr_get_out_samples(resampler_.get(), frame != nullptr ? frame->nb_samples : 0);
+      libav().swr_get_out_samples(resampler_.get(), frame != nullptr ? frame->nb_samples : 0);
   if (capacity <= 0) {
     return;
   }
   const LibavFrame converted = make_libav_frame();
   converted->format = AV_SAMPLE_FMT_FLTP;
   converted->nb_samples = capacity;
-  if (av_channel_layout_copy(&converted->ch_layout, &encoder_->ch_layout) < 0 ||
-      av_frame_get_buffer(converted.get(), 0) < 0) {
+  if (libav().av_channel_layout_copy(&converted->ch_layout, &encoder_->ch_layout) < 0 ||
+      libav().av_frame_get_buffer(converted.get(), 0) < 0) {
     throw std::bad_alloc();
   }
-  const int samples = swr_convert(
+  const int samples = libav().swr_convert(
       resampler_.get(), converted->extended_data, capacity,
       frame != nullptr ? const_cast<const std::uint8_t**>(frame->extended_data) : nullptr,
       frame != nullptr ? frame->nb_samples : 0);
@@ -294,7 +294,8 @@ void EncodedSound::queue_samples(const AVFrame* frame) {
           converted->extended_data[channel] +
           static_cast<std::size_t>(first - next_sample_) * sizeof(float);
     }
-    if (av_audio_fifo_write(queue_.get(), planes.data(), static_cast<int>(end - first)) < 0) {
+    if (libav().av_audio_fifo_write(queue_.get(), planes.data(), static_cast<int>(end - first)) <
+        0) {
       throw std::bad_alloc();
     }
     if (next_to_encode_ == AV_NOPTS_VALUE) {

@@ -13,6 +13,7 @@
 
 #include "engine/error.h"
 #include "engine/io/video/libav_filter.h"
+#include "engine/io/video/libav_functions.h"
 #include "engine/io/video/libav_scaler.h"
 #include "engine/io/video/stated_format.h"
 #include "kernels/chroma_rows/chroma_rows.h"
@@ -123,7 +124,7 @@ void fill_rgb(const Image<T>& image, AVFrame& rgb) {
 
 /// Of the inverse matrix that libswscale has for its number, which is FFmpeg's.
 kernels::ChromaFactors chroma_factors(const FilmColours& colours) {
-  const int* inverse = sws_getCoefficients(colours.matrix);
+  const int* inverse = libav().sws_getCoefficients(colours.matrix);
   const auto weight = [](int factor) { return 1 - factor * 224.0 / 255 / (2 * 65536); };
   const double red = weight(inverse[0]);
   const double blue = weight(inverse[1]);
@@ -211,7 +212,8 @@ class PhotographToFrame {
     } else {
       const std::array<const std::uint8_t*, 4> planes = {rgb};
       const std::array<int, 4> pitches = {pitch};
-      sws_scale(scaler_.get(), planes.data(), pitches.data(), 0, height_, yuv.data, yuv.linesize);
+      libav().sws_scale(scaler_.get(), planes.data(), pitches.data(), 0, height_, yuv.data,
+                        yuv.linesize);
     }
   }
 

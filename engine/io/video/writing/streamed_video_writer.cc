@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "engine/image/eight_bit.h"
+#include "engine/io/video/libav_functions.h"
 #include "engine/io/video/libav_scaler.h"
 
 extern "C" {
@@ -45,10 +46,10 @@ void StreamedVideoWriter::add_header(const AVFrame& frame, bool is_grey) {
 void StreamedVideoWriter::add_planes(const AVFrame& frame) {
   const auto format = static_cast<AVPixelFormat>(frame.format);
   const std::size_t before = bytes_.size();
-  const int size = av_image_get_buffer_size(format, frame.width, frame.height, 1);
+  const int size = libav().av_image_get_buffer_size(format, frame.width, frame.height, 1);
   bytes_.resize(before + static_cast<std::size_t>(size));
-  av_image_copy_to_buffer(bytes_.data() + before, size, frame.data, frame.linesize, format,
-                          frame.width, frame.height, 1);
+  libav().av_image_copy_to_buffer(bytes_.data() + before, size, frame.data, frame.linesize, format,
+                                  frame.width, frame.height, 1);
 }
 
 void StreamedVideoWriter::add_rgb(const Photograph& frame) {

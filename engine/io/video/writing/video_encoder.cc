@@ -55,19 +55,19 @@ EncoderSetup::EncoderSetup(const VideoEncoding& encoding, int width, int height)
   if (coding.has_odd_sizes) {
     encoder_->gop_size = 1;  // every frame can be decoded alone
   }
-  av_dict_parse_string(&options_, coding.options, "=", ",", 0);
+  libav().av_dict_parse_string(&options_, coding.options, "=", ",", 0);
   if (encoding.coding == VideoCoding::kHevcColours_10 && colours.is_hdr()) {
-    std::string hdr = std::string(av_dict_get(options_, kX265, nullptr, 0)->value);
+    std::string hdr = std::string(libav().av_dict_get(options_, kX265, nullptr, 0)->value);
     hdr += colours.mastering_display.empty() ? "" : ":master-display=" + colours.mastering_display;
     hdr += colours.light_level.empty() ? "" : ":max-cll=" + colours.light_level;
-    av_dict_set(&options_, kX265, hdr.c_str(), 0);
+    libav().av_dict_set(&options_, kX265, hdr.c_str(), 0);
   }
   if (coding.has_crf) {
-    av_dict_set_int(&options_, "crf", encoding.crf, 0);
+    libav().av_dict_set_int(&options_, "crf", encoding.crf, 0);
   }
 }
 
-EncoderSetup::~EncoderSetup() { av_dict_free(&options_); }
+EncoderSetup::~EncoderSetup() { libav().av_dict_free(&options_); }
 
 LibavCodec EncoderSetup::open(int& result) {
   result = codec_ == nullptr ? AVERROR_ENCODER_NOT_FOUND

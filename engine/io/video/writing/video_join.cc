@@ -58,9 +58,9 @@ class Segment {
     if (result < 0 || (packet.flags & AV_PKT_FLAG_CORRUPT) != 0 || packet.pts == AV_NOPTS_VALUE) {
       fail(result < 0 ? libav_message(result) : "is damaged");
     }
-    const std::int64_t frame = av_rescale_q(packet.pts, stream_->time_base, frame_unit_);
+    const std::int64_t frame = libav().av_rescale_q(packet.pts, stream_->time_base, frame_unit_);
     // Matroska rounds times to milliseconds.
-    if (av_rescale_q(frame, frame_unit_, stream_->time_base) != packet.pts) {
+    if (libav().av_rescale_q(frame, frame_unit_, stream_->time_base) != packet.pts) {
       fail(fmt::format("has another frame rate, expected {}/{}", frame_unit_.den, frame_unit_.num));
     }
     packet.pts = frame;
@@ -139,7 +139,7 @@ class ShownTimes {
       : unit_(times ? AVRational{static_cast<int>(times->unit_numerator),
                                  static_cast<int>(times->unit_denominator)}
                     : frame_unit),
-        step_(std::max<std::int64_t>(1, av_rescale_q(1, frame_unit, unit_))),
+        step_(std::max<std::int64_t>(1, libav().av_rescale_q(1, frame_unit, unit_))),
         times_(times) {}
 
   [[nodiscard]] bool is_steady() const { return !times_; }

@@ -66,10 +66,10 @@ int VideoMuxer::add_stream(const AVCodecParameters& parameters, AVRational time_
 void VideoMuxer::begin() {
   AVDictionary* options = nullptr;
   if (!is_matroska_) {
-    av_dict_set(&options, "movflags", "+faststart", 0);
+    libav().av_dict_set(&options, "movflags", "+faststart", 0);
   }
   const int result = libav().avformat_write_header(output_.get(), &options);
-  av_dict_free(&options);
+  libav().av_dict_free(&options);
   if (result < 0) {
     fail(libav_message(result));
   }
