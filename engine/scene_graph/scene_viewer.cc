@@ -119,7 +119,10 @@ std::shared_ptr<const SceneSources> SceneViewer::make_sources(const ScenePlace& 
     const SceneVertex& loaded = *sources->loaded[k];
     std::vector<MapOfEdge> maps = maps_of(loaded);
     for (std::size_t i = 0; i < maps.size(); ++i) {
+      // Three images show a surface together only where it is at one depth for all of them, which
+      // all edges of an image know best.
       maps[i].is_own =
+          place.is_triangle() ||
           std::ranges::find(sources->vertices, loaded.maps[i].neighbour) != sources->vertices.end();
     }
     DisparityMap& fused = sources->disparity_px[k];

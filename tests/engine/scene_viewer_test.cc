@@ -148,6 +148,29 @@ TEST(SceneViewer, OneEdgeIsAPairOfTheSynthesizer) {
   EXPECT_TRUE(same(view.image, expected.image));
 }
 
+// One edge of the middle image is wrong, three are right.
+TEST(SceneViewer, InATriangleAllEdgesOfAnImageVote) {
+  const MadeUpScene scene(grid(3, 3, 0.5, 0.5));
+  SynthesizedView view;
+  for (std::size_t wrong = 0; wrong < 4; ++wrong) {
+    SceneViewer viewer(
+        scene.layout(),
+        [&](int vertex) {
+          SceneVertex loaded = scene.load(vertex);
+          if (vertex == 4) {
+            loaded.maps[wrong].disparity_px.fill(9);
+          }
+          return loaded;
+        },
+        {}, execution());
+    for (const ScenePosition position :
+         {ScenePosition{0.4, 0.4}, {0.6, 0.4}, {0.4, 0.6}, {0.6, 0.6}}) {
+      EXPECT_TRUE(viewer.synthesize(position, view).is_triangle());
+      EXPECT_GE(scene.psnr(view, position), 31.5) << wrong;
+    }
+  }
+}
+
 TEST(SceneViewer, ATriangleHasFewerHolesThanItsEdges) {
   const MadeUpScene scene(grid(2, 2, 1, 1));
   SynthesizedView view;
