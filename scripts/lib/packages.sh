@@ -15,13 +15,17 @@ readonly BUILD_PACKAGES=(
 
 # What some tests need beside that; without these they are skipped.
 # shellcheck disable=SC2034
-readonly TEST_PACKAGES=(slurmctld slurmd slurm-client munge xvfb xdotool)
+readonly WHEEL_PACKAGES=(patchelf python3-build python3-setuptools python3-venv python3-wheel)
+# shellcheck disable=SC2034
+readonly TEST_PACKAGES=(
+  slurmctld slurmd slurm-client munge xvfb xdotool "${WHEEL_PACKAGES[@]}"
+)
 # shellcheck disable=SC2034
 readonly BROWSER_PACKAGES=(chromium)
 
 # What scripts/package needs beside BUILD_PACKAGES.
 # shellcheck disable=SC2034
-readonly PACKAGING_PACKAGES=(dpkg-dev file)
+readonly PACKAGING_PACKAGES=(dpkg-dev file "${WHEEL_PACKAGES[@]}")
 
 # What the documentation site is built with.
 # shellcheck disable=SC2034

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # usage: try_packages.sh DIR
-# Installs the packages of DIR on a new, minimal Debian 12 in a temporary folder, and uses them.
+# Installs the wheel and the packages of DIR on a new, minimal Debian 12 in a temporary folder, and
+# uses them.
 set -euo pipefail
 
 packages=$1
@@ -22,7 +23,7 @@ cp /etc/resolv.conf "$root/etc/resolv.conf" 2>/dev/null || true
 mount -t proc proc "$root/proc"
 mount -t sysfs -o ro sysfs "$root/sys"
 mkdir "$root/packages"
-cp "$packages"/*.deb "$root/packages/"
+cp "$packages"/*.deb "$packages"/*.whl "$root/packages/"
 
 inside() {
   chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 \
@@ -39,7 +40,21 @@ apt_inside() {
 
 # Documents are left out of minimal systems; these are to be seen.
 echo 'path-include=/usr/share/man/*' >"$root/etc/dpkg/dpkg.cfg.d/manual"
+# use_module NAME [PYTHON]
+use_module() {
+  inside "cd /tmp && ${2-python3} -c '
+import numpy, vantage
+left = numpy.random.default_rng(1).integers(0, 255, (90, 120), dtype=numpy.uint8)
+result = vantage.Matcher(disparities=(0, 15)).compute(left, left)
+assert result.disparity.shape == left.shape'"
+  echo "== $1: the module works"
+}
+
 apt_inside update
+apt_inside install python3-venv python3-numpy
+inside 'python3 -m venv --system-site-packages /tmp/environment &&
+  /tmp/environment/bin/pip install -q --no-index /packages/*.whl'
+use_module 'a wheel beside NumPy alone' /tmp/environment/bin/python
 start=$SECONDS
 apt_inside install '/packages/vantage_*.deb'
 echo "== vantage is installed ($((SECONDS - start)) s)"
@@ -56,12 +71,7 @@ echo "== manual and completion are there"
 
 if compgen -G "$packages/python3-vantage_*.deb" >/dev/null; then
   apt_inside install '/packages/python3-vantage_*.deb'
-  inside 'cd /tmp && python3 -c "
-import numpy, vantage
-left = numpy.random.default_rng(1).integers(0, 255, (90, 120), dtype=numpy.uint8)
-result = vantage.Matcher(disparities=(0, 15)).compute(left, left)
-assert result.disparity.shape == left.shape
-print(\"== Python module:\", vantage.__version__)"'
+  use_module 'python3 of the package'
 fi
 
 apt_inside install '/packages/libvantage-dev_*.deb' g++ cmake make
