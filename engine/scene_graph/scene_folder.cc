@@ -98,6 +98,7 @@ bool has_maps(const fs::path& folder, const StoredEdge& edge) {
 
 void remove_leftovers(const fs::path& folder, std::span<const SceneEdge> edges) {
   remove_temporary_files_of(folder / "scene.json");
+  remove_temporary_files_of(scene_lock_file(folder));
   std::set<std::string> maps;
   for (const SceneEdge& edge : edges) {
     for (std::size_t side = 0; side < 2; ++side) {
