@@ -2,6 +2,7 @@
 
 #include <hwloc.h>
 
+#include <new>
 #include <utility>
 
 namespace vantage::scheduler {
@@ -12,6 +13,11 @@ BoundThread::BoundThread(std::shared_ptr<hwloc_topology> system, const std::vect
   }
   before_ = hwloc_bitmap_alloc();
   hwloc_bitmap_t wanted = hwloc_bitmap_alloc();
+  if (before_ == nullptr || wanted == nullptr) {
+    hwloc_bitmap_free(before_);
+    hwloc_bitmap_free(wanted);
+    throw std::bad_alloc();
+  }
   for (const int hardware_thread : allowed) {
     hwloc_bitmap_set(wanted, static_cast<unsigned>(hardware_thread));
   }

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <new>
 #include <stdexcept>
 
 #include "scheduler/control_groups.h"
@@ -48,9 +49,9 @@ std::string environment(const char* name) {
   return value == nullptr ? std::string() : name + ('=' + std::string(value));
 }
 
-/// A copy of the topology, which is loaded once per process and environment: hwloc takes 5 to 10
-/// ms, mostly to open its plugins, and a command asks several times.
-Handle copy_of_loaded() {
+/// The topology, which is loaded once per process and environment: hwloc takes 5 to 10 ms, mostly
+/// to open its plugins, and a command asks several times. Nobody changes it.
+Handle known_topology() {
   static std::mutex mutex;
   static std::map<std::string, Handle> known;
   const std::lock_guard lock(mutex);
@@ -59,33 +60,42 @@ Handle copy_of_loaded() {
   if (is_new) {
     place->second = loaded();
   }
-  hwloc_topology_t copy = nullptr;
-  if (place->second == nullptr || hwloc_topology_dup(&copy, place->second.get()) != 0) {
-    return nullptr;
-  }
-  return {copy, hwloc_topology_destroy};
+  return place->second;
 }
 
-/// Leaves what the threads of this process may run on. cgroups hwloc knows itself.
-void restrict_to_affinity_mask(hwloc_topology_t topology) {
-  hwloc_bitmap_t mask = hwloc_bitmap_alloc();
-  if (hwloc_get_cpubind(topology, mask, HWLOC_CPUBIND_PROCESS) == 0) {
-    hwloc_topology_restrict(topology, mask, 0);  // fails, changing nothing, where nothing is left
+using ThreadSet = std::unique_ptr<hwloc_bitmap_s, decltype(&hwloc_bitmap_free)>;
+
+/// The hardware threads of the affinity mask of this process; of another machine all, and where
+/// none would be left. cgroups hwloc knows itself.
+ThreadSet usable_threads(hwloc_topology_t topology) {
+  ThreadSet usable(hwloc_bitmap_dup(hwloc_topology_get_topology_cpuset(topology)),
+                   hwloc_bitmap_free);
+  const ThreadSet mask(hwloc_bitmap_alloc(), hwloc_bitmap_free);
+  if (usable == nullptr || mask == nullptr) {
+    throw std::bad_alloc();
   }
-  hwloc_bitmap_free(mask);
+  if (hwloc_topology_is_thissystem(topology) != 0 &&
+      hwloc_get_cpubind(topology, mask.get(), HWLOC_CPUBIND_PROCESS) == 0 &&
+      hwloc_bitmap_intersects(usable.get(), mask.get()) != 0) {
+    hwloc_bitmap_and(usable.get(), usable.get(), mask.get());
+  }
+  return usable;
 }
 
-void read_cache(hwloc_topology_t topology, hwloc_obj_type_t type, std::size_t& bytes) {
-  const hwloc_obj_t cache = hwloc_get_obj_by_type(topology, type, 0);
+/// Of a hardware thread.
+void read_cache(hwloc_topology_t topology, hwloc_obj_t thread, hwloc_obj_type_t type,
+                std::size_t& bytes) {
+  const hwloc_obj_t cache = hwloc_get_ancestor_obj_by_type(topology, type, thread);
   if (cache != nullptr && cache->attr->cache.size > 0) {
     bytes = cache->attr->cache.size;
   }
 }
 
-/// The model that the first package, or else the machine, tells of.
-void read_processor(hwloc_topology_t topology, std::string& processor) {
+/// The model that the package of a hardware thread, or else the machine, tells of.
+void read_processor(hwloc_topology_t topology, hwloc_obj_t thread, std::string& processor) {
   for (const hwloc_obj_t object :
-       {hwloc_get_obj_by_type(topology, HWLOC_OBJ_PACKAGE, 0), hwloc_get_root_obj(topology)}) {
+       {hwloc_get_ancestor_obj_by_type(topology, HWLOC_OBJ_PACKAGE, thread),
+        hwloc_get_root_obj(topology)}) {
     const char* model =
         object == nullptr ? nullptr : hwloc_obj_get_info_by_name(object, "CPUModel");
     if (model != nullptr && *model != '\0') {
@@ -97,10 +107,14 @@ void read_processor(hwloc_topology_t topology, std::string& processor) {
 
 /// Nodes in hwloc's order. A hardware thread next to several kinds of memory counts for the first.
 std::vector<NumaNode> read_nodes(hwloc_topology_t topology) {
+  const ThreadSet usable = usable_threads(topology);
   std::vector<NumaNode> nodes;
   hwloc_obj_t last_core = nullptr;
   for (hwloc_obj_t thread = nullptr;
        (thread = hwloc_get_next_obj_by_type(topology, HWLOC_OBJ_PU, thread)) != nullptr;) {
+    if (hwloc_bitmap_isset(usable.get(), thread->os_index) == 0) {
+      continue;
+    }
     const int number = std::max(0, hwloc_bitmap_first(thread->nodeset));
     auto node = std::ranges::find(nodes, number, &NumaNode::number);
     if (node == nodes.end()) {
@@ -127,7 +141,9 @@ Topology read(const Handle& handle) {
   Topology known;
   known.nodes = read_nodes(topology);
   Machine& machine = known.machine;
-  read_processor(topology, machine.processor);
+  const hwloc_obj_t first = hwloc_get_pu_obj_by_os_index(
+      topology, static_cast<unsigned>(known.nodes.front().cores.front().front()));
+  read_processor(topology, first, machine.processor);
   machine.hardware_threads = 0;
   machine.cores = 0;
   for (const NumaNode& node : known.nodes) {
@@ -136,9 +152,9 @@ Topology read(const Handle& handle) {
   }
   machine.numa_nodes = static_cast<int>(known.nodes.size());
   machine.memory_bytes = hwloc_get_root_obj(topology)->total_memory;
-  read_cache(topology, HWLOC_OBJ_L1CACHE, machine.l1_data_bytes);
-  read_cache(topology, HWLOC_OBJ_L2CACHE, machine.l2_bytes);
-  read_cache(topology, HWLOC_OBJ_L3CACHE, machine.l3_bytes);
+  read_cache(topology, first, HWLOC_OBJ_L1CACHE, machine.l1_data_bytes);
+  read_cache(topology, first, HWLOC_OBJ_L2CACHE, machine.l2_bytes);
+  read_cache(topology, first, HWLOC_OBJ_L3CACHE, machine.l3_bytes);
   if (hwloc_topology_is_thissystem(topology) != 0) {
     known.system = handle;
   }
@@ -156,14 +172,11 @@ int NumaNode::hardware_threads() const {
 }
 
 Topology detect_topology() {
-  const Handle handle = copy_of_loaded();
+  const Handle handle = known_topology();
   if (handle == nullptr) {
     Topology unknown;
     unknown.nodes = {{.number = 0, .cores = {{0}}, .memory_bytes = 0}};
     return unknown;
-  }
-  if (hwloc_topology_is_thissystem(handle.get()) != 0) {
-    restrict_to_affinity_mask(handle.get());
   }
   Topology topology = read(handle);
   if (topology.system != nullptr) {
