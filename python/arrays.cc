@@ -116,12 +116,7 @@ py::array_t<T> owning_array(Image<T> image) {
 
 }  // namespace
 
-PixelArray::PixelArray(const py::object& object, ChannelOrder order, std::string name)
-    : array_(without_repetition(to_array(object, name))), name_(std::move(name)) {
-  if (array_.ndim() != 2 && array_.ndim() != 3) {
-    throw UsageError(fmt::format("{}: the array has {} dimensions ({}), expected HxW or HxWx3",
-                                 name_, array_.ndim(), shape_text(array_)));
-  }
+void PixelArray::take_pixels(ChannelOrder order) {
   if (py::isinstance<py::array_t<std::uint8_t>>(array_)) {
     buffer_ = buffer_of<std::uint8_t>(array_, order);
   } else if (py::isinstance<py::array_t<std::uint16_t>>(array_)) {
@@ -133,6 +128,20 @@ PixelArray::PixelArray(const py::object& object, ChannelOrder order, std::string
         fmt::format("{}: the array is of {}, expected uint8, uint16 or float32 (0 to 1)", name_,
                     std::string(py::str(array_.dtype()))));
   }
+}
+
+PixelArray::PixelArray(const py::object& object, ChannelOrder order, std::string name)
+    : array_(to_array(object, name)), name_(std::move(name)) {
+  if (array_.ndim() != 2 && array_.ndim() != 3) {
+    throw UsageError(fmt::format("{}: the array has {} dimensions ({}), expected HxW or HxWx3",
+                                 name_, array_.ndim(), shape_text(array_)));
+  }
+  take_pixels(order);
+  about(name_, [&] {
+    return std::visit([](const auto& buffer) { check_pixel_buffer(buffer); }, buffer_);
+  });
+  array_ = without_repetition(array_);
+  take_pixels(order);
 }
 
 Photograph PixelArray::photograph(const WhiteLevel& level) const {

@@ -27,6 +27,9 @@ class PixelArray {
   [[nodiscard]] const std::string& name() const { return name_; }
 
  private:
+  /// Sets buffer_.
+  void take_pixels(ChannelOrder order);
+
   pybind11::array array_;
   std::string name_;
   std::variant<PixelBuffer<std::uint8_t>, PixelBuffer<std::uint16_t>, PixelBuffer<float>> buffer_;

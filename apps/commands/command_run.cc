@@ -121,6 +121,7 @@ int command_run(const Arguments& arguments) {
   execution_options.chain_memory_bytes = session.memory.chain_bytes;
   Execution execution(execution_options);
   report.set_execution(execution);
+  tell_threads(execution, job.common, report);
   report.set_tuning(session.tuning.report, session.tuning.summary);
   if (job.dry_run) {
     fmt::print("{}{}", plan, forecast_run(job, session, execution, report));

@@ -4,6 +4,7 @@
 
 #include "apps/commands/commands.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "engine/simd.h"
 
 namespace vantage::apps {
@@ -24,6 +25,7 @@ CommandWork::CommandWork(const Settings& settings, const CommonOptions& common_o
       report(settings.command(), std::move(reported)),
       execution(ready(common_options, report)) {
   report.set_execution(execution);
+  tell_threads(execution, common, report);
 }
 
 int CommandWork::finish(SettingValue results, const std::string& message) {

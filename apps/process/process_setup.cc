@@ -5,11 +5,14 @@
 
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <initializer_list>
 #include <new>
 
 #include "apps/process/interrupt.h"
+#include "apps/process/tell.h"
 
 namespace vantage::apps {
 namespace {
@@ -27,6 +30,20 @@ void give_reserve_back() {
   std::free(block);  // NOLINT(cppcoreguidelines-no-malloc)
 }
 
+/// Some libraries print lines of their own, whatever their log level: x264, where memory ends. What
+/// a command has to say goes through tell(), which does not need the C library's stream.
+void keep_libraries_quiet() {
+#ifdef __GLIBC__
+  if (std::FILE* const nowhere = std::fopen("/dev/null", "we"); nowhere != nullptr) {
+    stderr = nowhere;
+  }
+  std::set_terminate([] {
+    tell_text("vantage: ended by an error that nothing caught\n");
+    std::abort();
+  });
+#endif
+}
+
 }  // namespace
 
 void set_up_process() {
@@ -37,6 +54,7 @@ void set_up_process() {
       (void)::open("/dev/null", O_RDONLY);
     }
   }
+  keep_libraries_quiet();
   (void)std::signal(SIGPIPE, SIG_IGN);
   (void)std::signal(SIGXFSZ, SIG_IGN);
   remove_files_on_signals();

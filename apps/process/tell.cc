@@ -1,13 +1,15 @@
 #include "apps/process/tell.h"
 
-#include <cstdio>
+#include <unistd.h>
+
 #include <regex>
+
+#include "engine/io/files/file_descriptor.h"
 
 namespace vantage::apps {
 
 void tell_text(std::string_view text) noexcept {
-  (void)std::fwrite(text.data(), 1, text.size(), stderr);
-  (void)std::fflush(stderr);
+  (void)write_all(STDERR_FILENO, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 std::string with_dashes(std::string_view message) {

@@ -1,6 +1,9 @@
 #include "apps/reports/remarks.h"
 
+#include <fmt/format.h>
+
 #include "apps/process/tell.h"
+#include "engine/execution.h"
 
 namespace vantage::apps {
 
@@ -11,6 +14,19 @@ void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, 
       tell("{}: {}{}\n", report.command(), remark.is_warning() ? "warning: " : "",
            with_dashes(remark.text));
     }
+  }
+}
+
+void tell_threads(Execution& execution, const CommonOptions& common, RunReport& report) {
+  constexpr int kThreadsPerProcessor = 16;
+  const int threads = execution.executor().thread_count();
+  const int processors = execution.machine().hardware_threads;
+  if (threads > kThreadsPerProcessor * processors) {
+    const Remark remark{Remark::Kind::kNote, "threads",
+                        fmt::format("`threads` {} for {} processor{}: they take turns, and looking "
+                                    "for work takes longer than the work",
+                                    threads, processors, processors == 1 ? "" : "s")};
+    tell_remarks({&remark, 1}, common, report);
   }
 }
 

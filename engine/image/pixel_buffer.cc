@@ -18,23 +18,6 @@ namespace {
 // Widths of images of files end here, too; sums of positions stay far from the limits of int.
 constexpr int kMaxSidePx = 65500;
 
-template <typename T>
-void check(const PixelBuffer<T>& buffer) {
-  if (buffer.width_px < 1 || buffer.height_px < 1 || buffer.width_px > kMaxSidePx ||
-      buffer.height_px > kMaxSidePx) {
-    throw Error(fmt::format("the image has {}x{} pixels, expected 1 to {} columns and rows",
-                            buffer.width_px, buffer.height_px, kMaxSidePx));
-  }
-  if (buffer.channels != 1 && buffer.channels != 3 && buffer.channels != 4) {
-    throw Error(fmt::format(
-        "the image has {} channels, expected 1 (grey), 3 (colours) or 4 (colours and alpha)",
-        buffer.channels));
-  }
-  if (buffer.data == nullptr) {
-    throw Error("the image has no pixels, expected a pointer to the upper left one");
-  }
-}
-
 /// The buffer with all distances.
 template <typename T>
 PixelBuffer<T> complete(PixelBuffer<T> buffer) {
@@ -126,8 +109,25 @@ Photograph copy_of(const PixelBuffer<T>& buffer) {
 }  // namespace
 
 template <typename T>
+void check_pixel_buffer(const PixelBuffer<T>& buffer) {
+  if (buffer.width_px < 1 || buffer.height_px < 1 || buffer.width_px > kMaxSidePx ||
+      buffer.height_px > kMaxSidePx) {
+    throw Error(fmt::format("the image has {}x{} pixels, expected 1 to {} columns and rows",
+                            buffer.width_px, buffer.height_px, kMaxSidePx));
+  }
+  if (buffer.channels != 1 && buffer.channels != 3 && buffer.channels != 4) {
+    throw Error(fmt::format(
+        "the image has {} channels, expected 1 (grey), 3 (colours) or 4 (colours and alpha)",
+        buffer.channels));
+  }
+  if (buffer.data == nullptr) {
+    throw Error("the image has no pixels, expected a pointer to the upper left one");
+  }
+}
+
+template <typename T>
 Photograph photograph_of(const PixelBuffer<T>& given) {
-  check(given);
+  check_pixel_buffer(given);
   const PixelBuffer<T> buffer = complete(given);
   if (!is_like_image(buffer)) {
     return copy_of(buffer);
@@ -140,10 +140,13 @@ Photograph photograph_of(const PixelBuffer<T>& given) {
 
 template <typename T>
 Photograph copied_photograph(const PixelBuffer<T>& buffer) {
-  check(buffer);
+  check_pixel_buffer(buffer);
   return copy_of(complete(buffer));
 }
 
+template void check_pixel_buffer(const PixelBuffer<std::uint8_t>& buffer);
+template void check_pixel_buffer(const PixelBuffer<std::uint16_t>& buffer);
+template void check_pixel_buffer(const PixelBuffer<float>& buffer);
 template Photograph photograph_of(const PixelBuffer<std::uint8_t>& buffer);
 template Photograph photograph_of(const PixelBuffer<std::uint16_t>& buffer);
 template Photograph photograph_of(const PixelBuffer<float>& buffer);

@@ -28,6 +28,11 @@ struct PixelBuffer {
   ChannelOrder order = ChannelOrder::kRgb;
 };
 
+/// Throws Error for a size or a number of channels that no photograph has, and where there are no
+/// pixels. Reads none. Thread rule: pure.
+template <typename T>
+void check_pixel_buffer(const PixelBuffer<T>& buffer);
+
 /// A photograph of the pixels of `buffer`. Where they lie in memory as an Image has them (values
 /// and pixels follow each other, in RGB order, rows further on by a multiple of sizeof(T)) it reads
 /// them in place: `buffer` must then outlive it and the photograph must not be written to.

@@ -39,6 +39,12 @@ std::string nearest_name(std::string_view text, const std::vector<std::string>& 
   std::size_t min_distance = (letters.size() + 1) / kLettersPerEdit + 1;
   for (const std::string& candidate : candidates) {
     const bool is_beginning = letters.size() >= kMinPrefix && candidate.starts_with(text);
+    // No less than this, and all that a key of a megabyte may cost.
+    const std::size_t added =
+        std::max(text.size(), candidate.size()) - std::min(text.size(), candidate.size());
+    if (!is_beginning && added >= min_distance) {
+      continue;
+    }
     const std::size_t distance = is_beginning ? 1 : edit_distance(text, candidate);
     if (distance < min_distance) {
       min_distance = distance;

@@ -3,6 +3,7 @@
 import ctypes
 import mmap
 import os
+import tracemalloc
 import warnings
 
 import numpy as np
@@ -62,6 +63,20 @@ def test_repeated_values(pair):
     for image in [pair[0][..., 1:2], pair[0][:1], pair[0][:, 5:6], pair[0][:1, :1, :1]]:
         repeated = np.broadcast_to(image, pair[0].shape)
         assert same(disparity(repeated, pair[1]), disparity(repeated.copy(), pair[1]))
+
+
+@pytest.mark.parametrize("image, message", [
+    (np.broadcast_to(np.uint8(0), (65000, 65000, 2)), "2 channels"),
+    (np.broadcast_to(np.uint8(0), (70000, 9000)), "9000x70000 pixels"),
+    (np.broadcast_to(np.int64(0), (9000, 9000)), "of int64"),
+])
+def test_repeated_values_are_refused_before_they_are_copied(image, message):
+    tracemalloc.start()
+    with pytest.raises(ValueError, match=message):
+        MATCHER.compute(image, image)
+    peak_bytes = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak_bytes < 1 << 20
 
 
 def test_bgr(pair):

@@ -108,4 +108,14 @@ TEST_F(OutOfMemory, NoRoomForAFrame) {
   }
 }
 
+/// x264 prints a line of its own, and FFmpeg cannot stop it.
+TEST_F(OutOfMemory, LibrariesAddNoLine) {
+  const ProcessResult result =
+      run_vantage(arguments(out_, joined(kVideoOutputs, {"--threads", "1", "--quiet"})),
+                  preloaded(test_paths::allocation_count(),
+                            {"ALLOCATION_COUNT=" + counts_, "ALLOCATION_FAIL=1",
+                             "ALLOCATION_BYTES=1400000", "ALLOCATION_MOST=1600000"}));
+  expect_one_line(result, 1, "run", "libx264");
+}
+
 }  // namespace vantage::out_of_memory_test

@@ -88,6 +88,15 @@ TEST_F(MatchOnNodes, TracesHaveTheThreadsOfAllNodes) {
   EXPECT_NEAR(all_s / in_pool, totals.at("wall_seconds").get<double>(), 1e-3);
 }
 
+TEST_F(MatchOnNodes, ManyMoreThreadsThanProcessorsAreTold) {
+  const std::string machine = "HWLOC_SYNTHETIC=node:1 core:1 pu:1";
+  const std::string note = "--threads 17 for 1 processor: ";
+  EXPECT_THAT(succeeds(match_on(machine, folder_ / "d.pfm", {"--threads", "17"})).err,
+              HasSubstr("match: " + note));
+  EXPECT_THAT(succeeds(match_on(machine, folder_ / "d.pfm", {"--threads", "16"})).err,
+              Not(HasSubstr("processor:")));
+}
+
 TEST_F(MatchOnNodes, SerialExecutorsAreNotBound) {
   const std::string out = folder_ / "map.pfm";
   expect_one_line(match_on("", out, {"--executor", "serial", "--bind", "core"}), 2, "match",

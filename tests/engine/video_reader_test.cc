@@ -326,16 +326,23 @@ TEST(VideoReader, RefusesAbsurdSizes) {
   EXPECT_THAT(error_of([&] { VideoReader(folder / "a.y4m"); }), HasSubstr("a.y4m"));
 }
 
-/// Codecs of games and screens are not opened, whatever a file calls its frames.
+/// Codecs of old games are not opened, whatever a file calls its frames; those of recorders of
+/// screens and of capture cards are.
 TEST(VideoReader, ReadsFootageOnly) {
   const TemporaryFolder folder;
   put_numbered_video(folder / "film.mp4", 2, {25, 1});
-  put_tracks({folder / "film.mp4"}, folder / "a.avi", "avi", [](AVStream& stream, int) {
-    stream.codecpar->codec_id = AV_CODEC_ID_MSVIDEO1;
-    stream.codecpar->codec_tag = 0;
-  });
-  EXPECT_THAT(error_of([&] { VideoReader(folder / "a.avi"); }),
+  const auto problem_of = [&](AVCodecID codec) {
+    put_tracks({folder / "film.mp4"}, folder / "a.avi", "avi", [&](AVStream& stream, int) {
+      stream.codecpar->codec_id = codec;
+      stream.codecpar->codec_tag = 0;
+    });
+    return error_of([&] { VideoReader(folder / "a.avi"); });
+  };
+  EXPECT_THAT(problem_of(AV_CODEC_ID_MSVIDEO1),
               HasSubstr("a.avi: its codec msvideo1 is none that footage uses"));
+  for (const AVCodecID codec : {AV_CODEC_ID_FRAPS, AV_CODEC_ID_ZMBV, AV_CODEC_ID_V210X}) {
+    EXPECT_THAT(problem_of(codec), Not(HasSubstr("footage"))) << codec;
+  }
 }
 
 }  // namespace vantage::video_reader_test

@@ -26,13 +26,19 @@ constexpr const char* kVideoContainers =
     "vc1,mjpeg,yuv4mpegpipe,nut,flv,live_flv,asf,ogg,mxf,dv,gif,apng,wtv,rm,gxf,dirac";
 
 /// Decoders of what cameras, recorders and editing programs write. FFmpeg has about 500 more, many
-/// of them for old games; few people test those against damaged files.
+/// of them for old games; few people test those against damaged files. Of recorders of screens,
+/// those for games and programs, whose films in stereo are recorded side by side (fraps to fic); of
+/// capture cards and the programs sold with them, those of Canopus and Grass Valley (cllc, hqx,
+/// hq_hqa), NewTek (speedhq), Apple (aic), Matrox (m101), and their orders of raw pixels (v210x,
+/// yuv4, y41p). Not those of conferences and remote desktops.
 constexpr const char* kFootageDecoders =
     "h264,hevc,av1,libdav1d,libaom-av1,libgav1,vp8,vp9,libvpx,libvpx-vp9,mpeg1video,mpeg2video,"
     "mpegvideo,mpeg4,msmpeg4v1,msmpeg4v2,msmpeg4,h261,h263,h263i,h263p,flv,vp6,vp6a,vp6f,wmv1,wmv2,"
     "wmv3,vc1,rv10,rv20,rv30,rv40,svq1,svq3,cinepak,theora,dirac,mjpeg,mjpegb,prores,dnxhd,cfhd,"
     "dvvideo,hap,ffv1,ffvhuff,huffyuv,utvideo,magicyuv,lagarith,qtrle,rawvideo,v210,v308,v408,v410,"
     "r210,r10k,jpeg2000,libopenjpeg,png,apng,gif,"
+    "fraps,dxtory,camstudio,zmbv,camtasia,tscc2,fic,cllc,hqx,hq_hqa,speedhq,aic,m101,v210x,yuv4,"
+    "y41p,"
     "aac,aac_fixed,aac_latm,libfdk_aac,ac3,ac3_fixed,eac3,dca,truehd,mlp,mp1,mp1float,mp2,mp2float,"
     "mp3,mp3float,flac,alac,opus,libopus,vorbis,libvorbis,wmav1,wmav2,wmapro,amrnb,amrwb,"
     "libopencore_amrnb,libopencore_amrwb,cook,speex,libspeex,nellymoser,adpcm_ms,adpcm_ima_wav,"

@@ -10,6 +10,7 @@
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <ranges>
 #include <string_view>
 
 #include "engine/error.h"
@@ -147,13 +148,9 @@ cv::Mat grey_levels(const Photograph& photograph) {
 }  // namespace
 
 CalibrationBoard parse_board(const std::string& text) {
-  std::vector<std::string> fields = {""};
-  for (const char c : text) {
-    if (c == ':') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
+  std::vector<std::string> fields;
+  for (const auto& field : text | std::views::split(':')) {
+    fields.emplace_back(field.begin(), field.end());
   }
   if (fields.size() != 2 && fields.size() != 4) {
     reject(text, "it has not two or four fields");
