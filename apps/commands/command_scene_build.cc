@@ -34,9 +34,11 @@ void add_scene_build_settings(Settings& settings, SceneBuildJob& job) {
   add_file_settings(settings, job);
   add_match_settings(settings, job.match);
   settings.start_group("Check");
+  add_rows_setting(settings, job.rows);
   add_rectification_check_setting(
       settings, job.check_rectification,
-      "Accept neighbours without checking that rows correspond and that enough pixels match");
+      "Accept neighbours as they are: correct no rows, and do not check that they correspond and "
+      "that enough pixels match");
   add_common_settings(settings, job.common);
   add_input_limit_settings(settings, job.common.execution);
   settings.set_short_help(

@@ -84,8 +84,8 @@ int command_scene_cloud(const Arguments& arguments) {
   RunReport& report = work.report;
   Execution& execution = work.execution;
   SceneCloudMaker maker(
-      scene, [&](int vertex) { return load_vertex(job.scene, scene, vertex); }, job.cloud,
-      execution);
+      scene, [&](int vertex) { return load_vertex(job.scene, scene, vertex, execution); },
+      job.cloud, execution);
   require_complete(scene, scene.graph, job.scene);
   const int images = static_cast<int>(scene.images.size());
   {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/commands/commands.h"
+#include "apps/inputs/rectification_check.h"
 #include "apps/process/command_work.h"
 #include "apps/process/interrupt.h"
 #include "apps/process/outputs.h"
@@ -69,6 +70,16 @@ SettingValue describe_edge(const BuiltEdge& built, SettingValue rectification) {
   return values;
 }
 
+/// Of the images that were corrected, each beside its left neighbour.
+SettingValue describe_rows(const std::vector<CorrectedImage>& images) {
+  SettingValue described = SettingValue::array();
+  for (const CorrectedImage& image : images) {
+    described.push_back(row_values(image.rows, true));
+    described.back()["image"] = image.vertex;
+  }
+  return described;
+}
+
 }  // namespace
 
 int run_scene_build(const SceneBuildJob& job, const Settings& settings) {
@@ -77,6 +88,7 @@ int run_scene_build(const SceneBuildJob& job, const Settings& settings) {
                                   .settings = match_settings_of(job.match),
                                   .copy_images = job.copy_images,
                                   .check_rectification = job.check_rectification,
+                                  .rows = job.rows,
                                   .neighbours = job.neighbours,
                                   .white_level = job.white_level,
                                   .reading = job.reading};
@@ -143,6 +155,7 @@ int run_scene_build(const SceneBuildJob& job, const Settings& settings) {
   report.set_results({{"images", builder.images()},
                       {"remarks", remarks},
                       {"triangles", builder.triangles()},
+                      {"rows", describe_rows(builder.corrected_images())},
                       {"edges", edges},
                       {"edges_refused", refused},
                       {"poses_corrected", corrected},

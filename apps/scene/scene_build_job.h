@@ -9,6 +9,7 @@
 #include "engine/matching/options/match_options.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/settings.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "engine/scene_graph/edge_maps.h"
 
 namespace vantage::apps {
@@ -21,6 +22,7 @@ struct SceneBuildJob {
   std::string output;
   bool copy_images = false;
   bool check_rectification = true;
+  RowMode rows = RowMode::kAuto;
   std::optional<double> white_level;
   PhotographReading reading;
   int neighbours = SceneBuildOptions{}.neighbours;

@@ -104,6 +104,7 @@ std::vector<SceneImage> scene_images(const SceneImagesInput& input, const Settin
                                      std::vector<std::string>& remarks) {
   if (!input.poses.empty()) {
     settings.refuse_idle({"grid", "spacing", "positions"}, "with --poses");
+    settings.refuse_idle({"rows"}, "with --poses, which say how rows correspond");
     return posed_scene_images(input.poses, input.images, input.intrinsics, input.lens, remarks);
   }
   settings.refuse_idle({"intrinsics", "lens", "neighbours"}, "without --poses");

@@ -206,7 +206,7 @@ int run_scene_view(const SceneViewJob& job, const Settings& settings) {
   RunReport& report = work.report;
   Execution& execution = work.execution;
   OpenScene open{job, outputs, execution, report, settings.command()};
-  const auto load = [&](int vertex) { return load_vertex(job.scene, scene, vertex); };
+  const auto load = [&](int vertex) { return load_vertex(job.scene, scene, vertex, execution); };
   if (scene.is_posed()) {
     require_complete(scene, scene.graph, job.scene);
     PosedViewer viewer(scene, load, job.synthesis, job.sources, execution);

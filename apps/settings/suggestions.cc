@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <initializer_list>
 
 #include "engine/options/nearest_name.h"
 
@@ -13,7 +12,7 @@ namespace {
 
 /// An answer to words that other programs use.
 struct WordAnswer {
-  std::initializer_list<std::string_view> words;
+  std::vector<std::string_view> words;
   std::string_view needs;  ///< option that a command must have for the answer to be true of it
   std::string_view answer;
 };

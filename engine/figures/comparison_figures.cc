@@ -182,7 +182,7 @@ Drawing maps_by_iterations(const FigureSettings& settings, const std::string& pa
   const auto is_iterative = [](const ComparisonRun* run) {
     return compared_method(run->method).is_iterative;
   };
-  std::ranges::stable_partition(shown, is_iterative);
+  std::stable_partition(shown.begin(), shown.end(), is_iterative);
   std::vector<SheetPicture> pictures;
   for (const ComparisonRun* run : shown) {
     pictures.push_back(

@@ -86,12 +86,12 @@ Mask Rectifier::left_out_of(const Photograph& source, Side side, Execution& exec
   if (!needs_rectification_) {
     return source.left_out.copy();
   }
-  const auto [x_px, y_px] = source_positions(side);
+  const PhotographPositions positions = source_positions(side);
   Mask left_out(pair_.width_px, pair_.height_px);
   execution.for_each_row(left_out.height(), [&](int y) {
     for (int x = 0; x < left_out.width(); ++x) {
-      const float column = std::floor(x_px.at(x, y) + 0.5F);
-      const float row = std::floor(y_px.at(x, y) + 0.5F);
+      const float column = std::floor(positions.x_px.at(x, y) + 0.5F);
+      const float row = std::floor(positions.y_px.at(x, y) + 0.5F);
       const bool is_seen = column >= 0 && column < static_cast<float>(source.width()) && row >= 0 &&
                            row < static_cast<float>(source.height());
       left_out.at(x, y) = !is_seen ? 255

@@ -91,7 +91,7 @@ DisparityMaps EdgeMaps::match_rows(const std::array<Photograph, 2>& images, doub
 
 std::array<Photograph, 2> EdgeMaps::photographs_of(const SceneEdge& edge) const {
   const auto photograph = [&](int vertex) {
-    return scene_.read_image(images_.at(static_cast<std::size_t>(vertex)).file);
+    return scene_.read_image(images_.at(static_cast<std::size_t>(vertex)).file, vertex, execution_);
   };
   return {photograph(edge.first), photograph(edge.second)};
 }

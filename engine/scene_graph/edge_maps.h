@@ -12,6 +12,7 @@
 #include "engine/image/photograph_reading.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/search/match_report.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "engine/rectification/vertical_error.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/scene_graph/stored_scene.h"
@@ -36,6 +37,8 @@ struct SceneBuildOptions {
   /// Refuses edges whose rows or columns do not correspond, or of which few pixels match
   /// (rectified_edge.h).
   bool check_rectification = true;
+  /// With the check and without poses, images are corrected, see correct_scene_rows().
+  RowMode rows = RowMode::kAuto;
   /// Neighbours that every posed camera is joined to, 1 to kMaxNeighbours.
   int neighbours = 4;
   std::optional<double> white_level = {};  ///< of all images, see WhiteLevelSearch

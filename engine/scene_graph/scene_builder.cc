@@ -126,6 +126,7 @@ SceneBuilder::SceneBuilder(fs::path folder, std::vector<SceneImage> images,
   scene_.width_px = first.width();
   scene_.height_px = first.height();
   find_edges();
+  correct_rows();
   remove_leftovers(folder_, edges_);
   keep_finished_edges();
 }
@@ -148,6 +149,20 @@ void SceneBuilder::find_edges() {
   scene_.focal_length_px = upper_median(focal_lengths_px);
 }
 
+void SceneBuilder::correct_rows() {
+  if (!layout_ || options_.rows == RowMode::kAsIs || !options_.check_rectification) {
+    return;
+  }
+  std::vector<fs::path> files;
+  for (const SceneImage& image : images_) {
+    files.push_back(image.file);
+  }
+  corrected_ = correct_scene_rows(scene_, edges_, files, execution_);
+  for (const CorrectedImage& image : corrected_) {
+    remarks_.push_back(image.remark);
+  }
+}
+
 StoredImage SceneBuilder::stored_image(const SceneImage& image) const {
   const std::string content = content_of_file(image.file);
   return {.file = stored_image_file(folder_, image.file, content, options_.copy_images),
@@ -160,7 +175,8 @@ bool SceneBuilder::is_same_image(const StoredScene& before, int vertex) const {
   const auto number = static_cast<std::size_t>(vertex);
   return number < before.images.size() &&
          before.images[number].content == scene_.images[number].content &&
-         before.images[number].camera == scene_.images[number].camera;
+         before.images[number].camera == scene_.images[number].camera &&
+         before.images[number].rows == scene_.images[number].rows;
 }
 
 bool SceneBuilder::is_finished(const StoredEdge& stored, const StoredScene& before,

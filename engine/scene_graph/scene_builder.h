@@ -9,6 +9,7 @@
 #include "engine/io/files/file_descriptor.h"
 #include "engine/scene_graph/edge_maps.h"
 #include "engine/scene_graph/scene_layout.h"
+#include "engine/scene_graph/scene_rows.h"
 #include "engine/scene_graph/stored_scene.h"
 
 namespace vantage {
@@ -42,6 +43,8 @@ class SceneBuilder {
   [[nodiscard]] const std::vector<SceneEdge>& edges() const { return edges_; }
   /// What was found in the images.
   [[nodiscard]] const std::vector<Remark>& remarks() const { return remarks_; }
+  /// Images whose rows are corrected.
+  [[nodiscard]] const std::vector<CorrectedImage>& corrected_images() const { return corrected_; }
   [[nodiscard]] int images() const { return static_cast<int>(images_.size()); }
   /// Triangles of views; none for posed cameras.
   [[nodiscard]] int triangles() const {
@@ -63,6 +66,7 @@ class SceneBuilder {
  private:
   [[nodiscard]] StoredImage stored_image(const SceneImage& image) const;
   void find_edges();
+  void correct_rows();
   void keep_finished_edges();
   [[nodiscard]] bool is_same_image(const StoredScene& before, int vertex) const;
   [[nodiscard]] bool is_finished(const StoredEdge& stored, const StoredScene& before,
@@ -76,6 +80,7 @@ class SceneBuilder {
   Execution& execution_;
   StoredScene scene_;
   std::vector<Remark> remarks_;
+  std::vector<CorrectedImage> corrected_;
   std::optional<SceneLayout> layout_;  // of cameras without poses
   std::vector<SceneEdge> edges_;
   FileLock lock_;

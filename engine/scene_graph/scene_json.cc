@@ -195,6 +195,13 @@ StoredScene scene_of(const Json& json, const std::string& name) {
         {.file = name_of_stored(image.at("file").get<std::string>()),
          .content = image.at("content").get<std::string>(),
          .position = {image.at("x").get<double>(), image.at("y").get<double>()}});
+    if (image.contains("rows")) {
+      scene.images.back().rows =
+          RowField(scene.width_px, scene.height_px, image.at("rows").get<RowField::Terms>());
+      if (!(scene.images.back().rows->max_px() <= kMaxCorrection_px)) {
+        throw Error(fmt::format("{}: rows of an image are out of range", name));
+      }
+    }
     if (format == kPosedFormat) {
       scene.images.back().camera =
           camera_of(image.at("camera"), {scene.width_px, scene.height_px}, name);
@@ -223,6 +230,9 @@ std::string scene_text(const StoredScene& scene) {
                       {"content", image.content}});
     if (image.camera) {
       images.back()["camera"] = json_of(*image.camera);
+    }
+    if (image.rows) {
+      images.back()["rows"] = image.rows->coefficients_px();
     }
   }
   Json edges = Json::array();

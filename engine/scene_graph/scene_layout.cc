@@ -168,9 +168,10 @@ void SceneLayout::join_obliquely() {
       return is_lonely[static_cast<std::size_t>(end)] &&
              (triangles_.empty() || is_near(end, length));
     };
-    const bool is_edge = std::any_of(edges_.begin(), edges_.end(), [&](const SceneEdge& edge) {
-      return std::min(edge.first, edge.second) == a && std::max(edge.first, edge.second) == b;
-    });
+    const bool is_edge =
+        std::any_of(edges_.begin(), edges_.end(), [&a = a, &b = b](const SceneEdge& edge) {
+          return std::min(edge.first, edge.second) == a && std::max(edge.first, edge.second) == b;
+        });
     if (!is_edge && (wants(a) || wants(b))) {
       edges_.push_back(oblique_edge(a, b));
     }

@@ -14,6 +14,7 @@
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "engine/scene_graph/scene_json.h"
 
 namespace vantage {
@@ -49,10 +50,19 @@ Mask read_mask(const fs::path& file, const Photograph& image) {
 
 }  // namespace
 
-Photograph StoredScene::read_image(const fs::path& file) const {
+Photograph StoredScene::read_image(const fs::path& file, int vertex, Execution& execution) const {
   Photograph image = read_photograph(file, reading);
   if (white_level) {
     WhiteLevel{image.pixels.index(), *white_level}.apply(image);
+  }
+  if (const auto& rows = images.at(static_cast<std::size_t>(vertex)).rows) {
+    if (image.width() != rows->width() || image.height() != rows->height()) {
+      throw Error(fmt::format("{}: is {}×{}, expected {}×{} as the scene", file.string(),
+                              image.width(), image.height(), rows->width(), rows->height()));
+    }
+    Photograph corrected;
+    correct_rows(image, *rows, corrected, execution);
+    return corrected;
   }
   return image;
 }
@@ -152,7 +162,8 @@ void require_complete(const StoredScene& scene, std::span<const SceneEdge> edges
   }
 }
 
-SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int vertex) {
+SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int vertex,
+                        Execution& execution) {
   const StoredImage& stored = scene.images.at(static_cast<std::size_t>(vertex));
   const fs::path image_file = folder / stored.file;
   std::error_code ignored;
@@ -169,7 +180,7 @@ SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int ve
                     image_file.string()));
   }
   SceneVertex result;
-  result.image = scene.read_image(image_file);
+  result.image = scene.read_image(image_file, vertex, execution);
   for (const StoredEdge& edge : scene.edges) {
     for (std::size_t side = 0; side < 2; ++side) {
       const int ends[] = {edge.edge.first, edge.edge.second};

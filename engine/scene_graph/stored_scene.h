@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/execution.h"
 #include "engine/image/photograph_reading.h"
 #include "engine/matching/options/match_options.h"
+#include "engine/rectification/rows/row_field.h"
 #include "engine/scene_graph/scene_camera.h"
 #include "engine/scene_graph/scene_layout.h"
 #include "engine/scene_graph/scene_viewer.h"
@@ -22,6 +24,8 @@ struct StoredImage {
   std::string content;     ///< content_of_file() of it
   ScenePosition position;  ///< of scenes without poses
   std::optional<SceneCamera> camera = std::nullopt;  ///< of scenes with poses
+  /// By which its rows are corrected, see correct_rows(); none: as it is.
+  std::optional<RowField> rows = std::nullopt;
 };
 
 /// A file of a scene's maps.
@@ -71,8 +75,10 @@ struct StoredScene {
   std::vector<SceneEdge> graph = {};
   std::vector<RefusedEdge> refused = {};
 
-  /// read_photograph() at the white level.
-  [[nodiscard]] Photograph read_image(const std::filesystem::path& file) const;
+  /// The image of a vertex, from its file: read_photograph() at the white level, with its rows
+  /// corrected.
+  [[nodiscard]] Photograph read_image(const std::filesystem::path& file, int vertex,
+                                      Execution& execution) const;
   [[nodiscard]] bool is_posed() const { return !images.empty() && images[0].camera.has_value(); }
   /// Of a posed scene.
   [[nodiscard]] std::vector<SceneCamera> cameras() const;
@@ -103,8 +109,10 @@ void require_complete(const StoredScene& scene, std::span<const SceneEdge> edges
                       const std::filesystem::path& folder);
 
 /// A vertex of a stored scene; of posed cameras, the image as its photograph, still distorted.
+/// Identical for any `execution`.
 /// Throws Error naming the file for an image that has changed since it was matched, and for maps
 /// that are missing or of another size.
-SceneVertex load_vertex(const std::filesystem::path& folder, const StoredScene& scene, int vertex);
+SceneVertex load_vertex(const std::filesystem::path& folder, const StoredScene& scene, int vertex,
+                        Execution& execution = default_execution());
 
 }  // namespace vantage

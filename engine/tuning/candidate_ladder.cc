@@ -29,7 +29,7 @@ std::vector<int> fine_ladder(int value, int max) {
     }
   }
   std::ranges::sort(values);
-  values.erase(std::ranges::unique(values).begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
 }
 

@@ -195,7 +195,8 @@ HWY_INLINE int energies_of_several(D8 d, const RayCensusPairs& row, const ByteBy
                                    int column, std::uint8_t* cells) {
   constexpr int kColumns = hn::MaxLanes(D8()) / kLaneMultiple;
   if constexpr (kColumns > 1) {
-    const auto& [reference, partner] = row.channel[0];
+    const auto& reference = row.channel[0].reference;
+    const auto& partner = row.channel[0].partner;
     const std::ptrdiff_t step = row.partner_step;
     for (; column + kColumns <= row.columns; column += kColumns) {
       const std::ptrdiff_t at = column * step;

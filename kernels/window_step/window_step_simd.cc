@@ -305,7 +305,8 @@ void step(const WindowStepRow& given, const std::array<WindowCells*, kWindows>& 
   const Tag64 d64;
   const Tag16 d16;
   const WindowStepRow row = given;  // a copy: stores cannot alias it
-  const auto [first_support, second_support] = support;
+  WindowCells* const first_support = support[0];
+  WindowCells* const second_support = support[1];
   const Vec16 ceiling = hn::Set(d16, row.prior.ceiling);
   for (int x = 0; x < row.columns; x += kColumns) {
     const auto store_first = [&](const Totals& first) HWY_ATTR {

@@ -21,6 +21,7 @@
 #include "perf/command_line.h"
 #include "perf/default_paths.h"
 #include "perf/quality/map_contender.h"
+#include "perf/quality/picture_page.h"
 #include "perf/quality/results.h"
 #include "perf/quality/sgbm_search.h"
 #include "perf/quality/sub_pixel.h"
@@ -48,6 +49,8 @@ struct Settings {
   bool sub_pixel = false;
   bool views = false;
   bool search_peers = false;
+  std::optional<std::filesystem::path> html;
+  std::optional<std::filesystem::path> before;
 };
 
 Settings read_settings(int argc, char** argv) {
@@ -75,6 +78,10 @@ Settings read_settings(int argc, char** argv) {
   line.flag("--sub-pixel", settings.sub_pixel, "Fractions of disparities and their errors, too");
   line.flag("--views", settings.views,
             "Instead: views between the cameras, from true maps and from all contenders' maps");
+  line.option("--html", settings.html,
+              "Instead: FOLDER/index.html with each contender's maps, errors and new views");
+  line.option("--before", settings.before,
+              "With --html: a folder that another build made, shown beside");
   line.flag("--search-peers", settings.search_peers,
             "Instead: the search for StereoSGBM's post-processing");
   line.parse(argc, argv);
@@ -217,6 +224,13 @@ void run(const Settings& settings) {
   if (settings.views && (settings.csv || settings.sub_pixel)) {
     throw UsageError("--views cannot be combined with --csv or --sub-pixel");
   }
+  if (settings.before && !settings.html) {
+    throw UsageError("--before needs --html");
+  }
+  if (settings.html &&
+      (settings.views || settings.search_peers || settings.csv || settings.sub_pixel)) {
+    throw UsageError("--html cannot be combined with other results");
+  }
   if (settings.search_peers && settings.sub_pixel) {
     throw UsageError("--search-peers cannot be combined with --sub-pixel");
   }
@@ -224,6 +238,11 @@ void run(const Settings& settings) {
   if (settings.search_peers) {
     search_sgbm_post_processing(peers, results.scenes, settings.data, settings.csv.value_or(""),
                                 execution);
+    return;
+  }
+  if (settings.html) {
+    write_picture_page(results.contenders, results.scenes, settings.data,
+                       {.folder = *settings.html, .before = settings.before}, execution);
     return;
   }
   if (settings.views) {

@@ -13,6 +13,10 @@ readonly BUILD_PACKAGES=(
   python3 python3-dev python3-numpy python3-opencv python3-pytest pybind11-dev
 )
 
+# What scripts/fuzz needs beside that: clang with libFuzzer, and its OpenMP.
+# shellcheck disable=SC2034
+readonly FUZZ_PACKAGES=(clang libclang-rt-14-dev libomp-dev)
+
 # What some tests need beside that; without these they are skipped.
 # shellcheck disable=SC2034
 readonly WHEEL_PACKAGES=(patchelf python3-build python3-setuptools python3-venv python3-wheel)

@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 TEST = re.compile(r"^\s*(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.MULTILINE)
-FOLDERS = ("kernels", "scheduler", "engine", "accuracy", "apps")
+FOLDERS = ("kernels", "scheduler", "engine", "fuzz", "accuracy", "apps")
 
 
 def suite_filters(suite, test):

@@ -350,6 +350,7 @@ TEST_F(SceneBuilderTest, TellsWhetherRowsAndColumnsCorrespond) {
       write_photograph(images.back().file, seen_from(at));
     }
     SceneBuildOptions build;
+    build.rows = RowMode::kAsIs;
     build.match.preset = MatchPreset::kRealtime;  // maps are not looked at
     build.match.disparities = {-20, 20};
     fs::remove_all(place_);

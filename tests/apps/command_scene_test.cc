@@ -6,6 +6,7 @@
 #include "engine/evaluation/view_evaluation.h"
 #include "engine/generation/layered_scene.h"
 #include "engine/io/video/video_io.h"
+#include "engine/rectification/rows/row_correction.h"
 #include "tests/apps/sampling.h"
 #include "tests/engine/unrectified_pair.h"
 
@@ -233,7 +234,8 @@ TEST_F(SceneCommand, WarnsOfEdgesThatDoNotCorrespond) {
     fs::remove_all(place_);
     return build(joined({"--positions", folder_ / "list.csv"}, more));
   };
-  const ProcessResult built = succeeds(build_with({"--report", folder_ / "report.json"}));
+  const ProcessResult built =
+      succeeds(build_with({"--rows", "as-is", "--report", folder_ / "report.json"}));
   EXPECT_THAT(built.err, AllOf(HasSubstr("warning: edge 2-3 (2.png, 3.png): rows are off by"),
                                Not(HasSubstr("edge 0-1")), Not(HasSubstr("exchanged"))));
   const nlohmann::json edges = read_json(folder_ / "report.json").at("results").at("edges_matched");
@@ -245,6 +247,37 @@ TEST_F(SceneCommand, WarnsOfEdgesThatDoNotCorrespond) {
   write_file(folder_ / "list.csv", "1.png,0,0\n0.png,1,0\n");
   EXPECT_THAT(build_with({}).err,
               HasSubstr("warning: edge 0-1 (1.png, 0.png): the images look exchanged: "));
+}
+
+// The first, then the second of three photographs shows everything lower, and turned.
+TEST_F(SceneCommand, CorrectsTheRowsOfTheImageThatDiffers) {
+  const LayeredScene scene({.width_px = 320, .height_px = 240, .samples_per_side = 1}, execution_);
+  for (int wrong = 0; wrong < 2; ++wrong) {
+    fs::remove_all(place_);
+    for (int i = 0; i < 3; ++i) {
+      const Photograph image = scene.render(SceneView{0.5 * i, 0}, 0).image;
+      Photograph lower;
+      correct_rows(image, RowField(320, 240, {-1.4, -0.2}), lower, execution_);
+      write_photograph(folder_ / std::to_string(i) + ".png", i == wrong ? lower : image);
+    }
+    const Words images = {"--images", folder_ / "?.png", "--spacing", "0.5,1"};
+    EXPECT_THAT(build(joined(images, {"--rows", "as-is"})).err,
+                AnyOf(HasSubstr("rows are off by"), HasSubstr("not a rectified pair")));
+    const ProcessResult built =
+        succeeds(build(joined(images, {"--report", folder_ / "report.json"})));
+    EXPECT_THAT(built.err,
+                AllOf(HasSubstr("rows: " + std::to_string(wrong) + ".png 1."),
+                      HasSubstr(" px lower"), HasSubstr("corrected"), Not(HasSubstr("warning"))));
+    const nlohmann::json rows = read_json(folder_ / "report.json").at("results").at("rows");
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_EQ(rows.at(0).at("image"), wrong);
+    EXPECT_NEAR(rows.at(0).at("offset_px").get<double>(), 1.4, 0.1);
+    EXPECT_THAT(build(images).err, HasSubstr("0 of them matched now"));
+    succeeds(view({"--at", "0.25,0", "-o", folder_ / "view.png"}));
+    const Photograph truth = scene.render(SceneView{0.25, 0}, 0).image;
+    EXPECT_GE(evaluate_view(read_photograph(folder_ / "view.png"), truth, execution_).psnr_db,
+              28.5);
+  }
 }
 
 TEST_F(SceneCommand, RefusesHandHeldCamerasUnlessForced) {

@@ -113,8 +113,9 @@ void remove_temporary_files(const fs::path& folder,
 
 void remove_temporary_files_of(const fs::path& file) {
   const auto [stem, extension] = shortened(file);
-  remove_temporary_files(file.parent_path(),
-                         [&](const std::string& name) { return name == stem + extension; });
+  remove_temporary_files(file.parent_path(), [wanted = stem + extension](const std::string& name) {
+    return name == wanted;
+  });
 }
 
 }  // namespace vantage

@@ -10,7 +10,6 @@
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
-#include <ranges>
 #include <string_view>
 
 #include "engine/error.h"
@@ -148,9 +147,13 @@ cv::Mat grey_levels(const Photograph& photograph) {
 }  // namespace
 
 CalibrationBoard parse_board(const std::string& text) {
-  std::vector<std::string> fields;
-  for (const auto& field : text | std::views::split(':')) {
-    fields.emplace_back(field.begin(), field.end());
+  std::vector<std::string> fields = {""};
+  for (const char c : text) {
+    if (c == ':') {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
   }
   if (fields.size() != 2 && fields.size() != 4) {
     reject(text, "it has not two or four fields");

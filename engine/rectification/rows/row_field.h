@@ -49,6 +49,8 @@ class RowField {
   /// Rotation of the right image there, clockwise.
   [[nodiscard]] double turn_degrees() const;
 
+  friend bool operator==(const RowField&, const RowField&) = default;
+
   [[nodiscard]] static Terms terms_at(double x, double y, int width_px, int height_px);
 
  private:
