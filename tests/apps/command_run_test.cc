@@ -1,7 +1,3 @@
-#include <chrono>
-#include <csignal>
-#include <thread>
-
 #include "engine/image/stereo_packing.h"
 #include "engine/io/video/video_io.h"
 #include "tests/apps/sampling.h"
@@ -111,44 +107,6 @@ TEST_F(RunCommand, TakesPatternsGlobsAndVideos) {
               ElementsAre("disparity/000000.pfm", "disparity/000001.pfm", "disparity/000002.pfm"));
 }
 
-TEST_F(RunCommand, StopsAtTheFirstBadFrame) {
-  const std::string whole = read_file(left_ + name(3));
-  write_file(left_ + name(3), whole.substr(0, whole.size() / 2));
-  for (const std::string executor : {"serial", "tbb", "openmp"}) {
-    const std::string out = folder_ / executor;
-    const ProcessResult result =
-        run(out, {"--executor", executor, "--threads", "3", "--in-flight", "4"});
-    expect_failure(result, 1, "\nvantage run: frame 3 (");
-    EXPECT_THAT(last_line(result), HasSubstr("frame3.png"));
-    EXPECT_THAT(made_in(out), ElementsAre("disparity/000000.pfm", "disparity/000001.pfm",
-                                          "disparity/000002.pfm"));
-  }
-}
-
-TEST_F(RunCommand, NamesTheFrameWhoseSizesDiffer) {
-  write_photograph(right_ + name(2), {Image<std::uint8_t>(4, 4)});
-  const ProcessResult result = run(folder_ / "out", {"--in-flight", "4"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(last_line(result), StartsWith("vantage run: frame 2 ("));
-  EXPECT_THAT(last_line(result), HasSubstr(right_ + name(2)));
-  EXPECT_THAT(made_in(folder_ / "out"),
-              ElementsAre("disparity/000000.pfm", "disparity/000001.pfm"));
-}
-
-TEST_F(RunCommand, UnequalLengthsInOrderAreAnErrorAfterTheCommonFrames) {
-  fs::remove(right_ + name(5));
-  fs::remove(right_ + name(4));
-  const Words in_order = {"--pair-by", "order"};
-  ProcessResult result = run(folder_ / "out", in_order);
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(last_line(result), HasSubstr("all 4 pairs are done, but"));
-  EXPECT_THAT(last_line(result), HasSubstr("2 frames more"));
-  EXPECT_EQ(made_in(folder_ / "out").size(), 4U);
-  result = run(folder_ / "out", joined(in_order, {"--resume", "--keep-going"}));
-  EXPECT_EQ(result.exit_code, 3) << result.err;
-  succeeds(run(folder_ / "out", joined(in_order, {"--resume", "--frames", "0-3"})));
-}
-
 TEST_F(RunCommand, FramesThatOneCameraDroppedAreLeftOut) {
   const std::string whole = folder_ / "whole";
   succeeds(run(whole));
@@ -183,33 +141,6 @@ TEST_F(RunCommand, FramesThatOneCameraDroppedAreLeftOut) {
   EXPECT_THAT(last_line(run(out, {"--resume", "--pair-by", "order"})), HasSubstr("pair-by was"));
   succeeds(run(folder_ / "every", {"--every", "2"}));
   EXPECT_EQ(disparity(folder_ / "every", 1), disparity(whole, 4));
-}
-
-TEST_F(RunCommand, InterruptFinishesTheFramesUnderWay) {
-  // Enough frames that the signal comes long before the end.
-  constexpr int kMany = 4000;
-  for (int frame = kFrames; frame < kMany; ++frame) {
-    fs::create_symlink(left_ + name(0), left_ + name(frame));
-    fs::create_symlink(right_ + name(0), right_ + name(frame));
-  }
-  const std::string out = folder_ / "out";
-  const TemporaryFolder streams;
-  const VantageProcess process(arguments(out, {"--report", folder_ / "r.json"}), streams.path());
-  for (int wait = 0; wait < 2000 && made_in(out).empty(); ++wait) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  process.send(SIGINT);
-  const ProcessResult result = process.wait();
-  EXPECT_EQ(result.exit_code, 130) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("interrupted"));
-  const auto files = made_in(out);
-  ASSERT_FALSE(files.empty());
-  EXPECT_LT(files.size(), static_cast<std::size_t>(kMany));
-  // No gap, no partial file: the last one is the one that the count says.
-  char last[64];
-  std::snprintf(last, sizeof last, "disparity/%06zu.pfm", files.size() - 1);
-  EXPECT_EQ(files.back(), last);
-  EXPECT_EQ(read_json(folder_ / "r.json")["results"]["frames"], files.size());
 }
 
 using InputRunCommand = RunCommand;

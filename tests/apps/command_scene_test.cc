@@ -83,27 +83,6 @@ TEST_F(SceneCommand, BuildsAGridAndRendersViewsOfIt) {
                               HasSubstr("triangles 4")));
 }
 
-TEST_F(SceneCommand, AListOfPositionsMayLeaveImagesOut) {
-  write_file(images_ + "/list.csv", "image,x,y\n0.png,0,0\n2.png,10,0\n3.png,0,5\n5.png,10,5\n");
-  succeeds(build({"--positions", images_ + "/list.csv"}));
-  succeeds(view({"--at", "5,5", "-o", folder_ / "v.png"}));
-  EXPECT_GE(psnr(folder_ / "v.png", 0.5, 0.5), 26);
-}
-
-TEST_F(SceneCommand, ASecondBuildKeepsWhatIsThere) {
-  succeeds(build_grid());
-  const std::string map = place_ + "/maps/001-004-second.pfm";
-  const std::string before = read_file(map);
-  const ProcessResult again = succeeds(build_grid({"--threads", "1"}));
-  EXPECT_THAT(again.err, HasSubstr("7 edges, 0 of them matched now"));
-  fs::remove(map);
-  EXPECT_THAT(view({"--at", "0.5,0.25", "-o", folder_ / "v.png"}).err,
-              HasSubstr("001-004-second.pfm"));
-  EXPECT_THAT(build_grid({"--threads", "1"}).err, HasSubstr("1 of them matched now"));
-  EXPECT_EQ(read_file(map), before);
-  EXPECT_THAT(build_grid({"--iterations", "2"}).err, HasSubstr("7 of them matched now"));
-}
-
 TEST_F(SceneCommand, MakesMoviesAndSaysWhatLiesOutside) {
   succeeds(build_grid({"--quiet"}));
   const ProcessResult movie =
@@ -146,28 +125,6 @@ TEST_F(SceneCommand, RendersPathsAndTwoEyes) {
       read_json(folder_ / "eyes.json").at("results").at("views").at(0).at("eyes");
   EXPECT_EQ(described.at(0).at("x"), 0.4);
   EXPECT_EQ(described.at(1).at("x"), 0.6);
-}
-
-TEST_F(SceneCommand, ViewsDoNotDependOnThreads) {
-  succeeds(build_grid({"--quiet"}));
-  std::string expected;
-  for (const char* threads : {"1", "2", "5"}) {
-    succeeds(view({"--sweep=-0.1,0.2:1.1,0.4:9", "--threads", threads, "-o", folder_ / "m.mp4",
-                   "--hole-mask", folder_ / "h%d.png"}));
-    const std::string made = read_file(folder_ / "m.mp4") + read_file(folder_ / "h8.png");
-    EXPECT_EQ(made, expected.empty() ? made : expected) << threads;
-    expected = made;
-  }
-}
-
-TEST_F(SceneCommand, AFolderWithCopiesCanBeMovedAlone) {
-  succeeds(build_grid({"--copy-images"}));
-  succeeds(view({"--at", "0.3,0.2", "-o", folder_ / "before.png"}));
-  fs::remove_all(images_);
-  fs::rename(place_, folder_ / "moved");
-  place_ = folder_ / "moved";
-  succeeds(view({"--at", "0.3,0.2", "-o", folder_ / "after.png"}));
-  EXPECT_EQ(read_file(folder_ / "after.png"), read_file(folder_ / "before.png"));
 }
 
 TEST_F(SceneCommand, AKilledBuildGoesOnWhereItStopped) {
@@ -315,15 +272,6 @@ TEST_F(SceneCommand, RefusesImagesOfWhichLittleMatches) {
                                  HasSubstr("% of the pixels match, expected at least 30 %"),
                                  HasSubstr("--disparities (40:60 was searched)")));
   EXPECT_TRUE(fs::is_empty(place_ + "/maps"));
-}
-
-TEST_F(SceneCommand, CamerasNeedNoRowsOrColumns) {
-  write_photograph(images_ + "/middle.png", truth_at(0.3, 0.35));
-  write_file(images_ + "/list.csv", "0.png,0,0\n2.png,1,0\n3.png,0,0.5\nmiddle.png,0.3,0.35\n");
-  succeeds(build({"--positions", images_ + "/list.csv"}));
-  succeeds(view({"--at", "0.25,0.2", "-o", folder_ / "v.png"}));
-  EXPECT_GE(psnr(folder_ / "v.png", 0.25, 0.2), 28);
-  EXPECT_THAT(run_vantage({"scene", "info", place_}).out, HasSubstr("slope"));
 }
 
 TEST_F(InputSceneCommand, RefusesWrongUsage) {

@@ -181,14 +181,6 @@ TEST_F(RunDisk, FilesWhereFoldersHaveToBe) {
   EXPECT_EQ(read_file(folder_ / "out/disparity"), "mine");
 }
 
-TEST_F(RunDisk, AFolderNamedLikeAResultIsNamed) {
-  const std::string out = folder_ / "out";
-  fs::create_directories(out + "/disparity/000003.pfm");
-  expect_one_line(run(out, {"--quiet"}), 1, "run",
-                  "frame 3: cannot write " + out + "/disparity/000003.pfm");
-  EXPECT_THAT(journalled_frames(out), ElementsAre(0, 1, 2));
-}
-
 TEST_F(RunDisk, AFolderThatGoesAwayAndComesBack) {
   constexpr int kMany = 600;
   for (int frame = kFrames; frame < kMany; ++frame) {

@@ -51,38 +51,6 @@ TEST_F(RunFolder, OneProcessPerPart) {
   EXPECT_EQ(journalled_frames(out_).size(), static_cast<std::size_t>(kFrames));
 }
 
-TEST_F(RunFolder, PartsAtOneTime) {
-  const FolderContent expected = undisturbed(kVideoOutputs);
-  std::vector<std::unique_ptr<TemporaryFolder>> streams;
-  std::vector<std::unique_ptr<VantageProcess>> processes;
-  for (const std::string shard : {"1/3", "2/3", "3/3"}) {
-    streams.push_back(std::make_unique<TemporaryFolder>());
-    processes.push_back(std::make_unique<VantageProcess>(
-        arguments(out_, joined(kVideoOutputs, {"--shard", shard})), streams.back()->path()));
-  }
-  for (const auto& process : processes) {
-    succeeds(process->wait());
-  }
-  succeeds(merge());
-  EXPECT_TRUE(same_files(results_in(out_), expected));
-  EXPECT_THAT(leftovers_in(out_), IsEmpty());
-  // Once more changes nothing.
-  succeeds(merge());
-  EXPECT_TRUE(same_files(results_in(out_), expected));
-}
-
-TEST_F(RunFolder, PartsThatAreMissingAreNamed) {
-  succeeds(run(out_, {"--chunk-frames", "5", "--shard", "2/4"}));
-  ProcessResult merged = merge();
-  expect_one_line(merged, 1, "merge", "15 of 20 frames are missing (0-4, 10-19)");
-  EXPECT_THAT(merged.err, HasSubstr("--resume --frames all' computes them, --partial leaves them"));
-  succeeds(run(out_, {"--chunk-frames", "5", "--shard", "1/4"}));
-  succeeds(run(out_, {"--chunk-frames", "5", "--resume"}));
-  succeeds(merge());
-  fs::remove(out_ + "/disparity/000012.pfm");
-  expect_failure(merge(), 1, "1 of 20 frames are missing (12)");
-}
-
 TEST_F(RunFolder, TheAdviceOfMergeComputesWhatIsMissing) {
   succeeds(run(out_, {"--frames", "2-5", "--chunk-frames", "2", "--shard", "1/2"}));
   succeeds(run_vantage({"merge", out_, "--partial"}));
@@ -98,22 +66,6 @@ TEST_F(RunFolder, TheAdviceOfMergeComputesWhatIsMissing) {
   EXPECT_THAT(merge().err, HasSubstr("--resume --frames all' computes them"));
   succeeds(run_vantage({"run", "-o", out_, "--resume", "--frames", "all"}));
   succeeds(merge());
-}
-
-TEST_F(RunFolder, DeletedResultsAreMadeAgain) {
-  for (const auto& outputs : {kImageOutputs, kVideoOutputs}) {
-    const FolderContent expected = undisturbed(outputs);
-    succeeds(run(out_, outputs));
-    fs::remove(out_ + "/disparity/000003.pfm");
-    write_file(out_ + "/disparity/000011.pfm", "");
-    expect_resumed(expected, outputs);
-    EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
-    fs::remove_all(out_ + "/disparity");
-    fs::remove_all(out_ + "/views");
-    fs::remove(out_ + "/views.mp4");
-    expect_resumed(expected, outputs);
-    fs::remove_all(out_);
-  }
 }
 
 TEST_F(RunFolder, DeletedResultsOfPartsAreMadeAgain) {

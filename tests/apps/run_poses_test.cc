@@ -81,19 +81,6 @@ TEST_F(RunPoses, AreTheViewsOfSynth) {
   }
 }
 
-TEST_F(RunPoses, TurnedPathsArePathsOfTurnedCameras) {
-  const auto views_of = [&](const Words& more) {
-    const std::string out = out_ + more[1];
-    succeeds(run(out, calibrated(joined(more, {"--frames", "0-2"}))));
-    return results_in(out + "/views");
-  };
-  const FolderContent moving = views_of({"--view-path", "0=0,2=1", "--look-at", "4"});
-  const FolderContent fixed = views_of({"--view", "0.5", "--look-at", "4"});
-  const FolderContent ahead = views_of({"--view", "1"});
-  EXPECT_EQ(moving.at(frame_file(1)), fixed.at(frame_file(1)));
-  EXPECT_NE(moving.at(frame_file(2)), ahead.at(frame_file(2)));
-}
-
 /// Each part with other threads.
 TEST_F(RunPoses, PartsAreMergedWithoutTheFiles) {
   const Words outputs = all_views({"--video", "views", "--chunk-frames", "5"});

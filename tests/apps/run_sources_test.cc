@@ -79,16 +79,6 @@ TEST_F(InputRunSources, APngThatIsCutOff) {
   break_and_repair("left", frame_bytes("left", kBad).substr(0, 900), "");
 }
 
-TEST_F(InputRunSources, APngWithOtherBytesInTheMiddle) {
-  std::string bytes = frame_bytes("right", kBad);
-  for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 40; ++i) {
-    bytes[i] = static_cast<char>(~bytes[i]);
-  }
-  break_and_repair("right", bytes, "");
-}
-
-TEST_F(RunSources, AnEmptyFile) { break_and_repair("left", "", ""); }
-
 TEST_F(RunSources, AFrameOfAnotherSizeOnOneSide) {
   const std::string other = file("left", kBad) + ".png";
   write_photograph(other, {Image<std::uint8_t>(kWidth + 1, kHeight)});
@@ -110,27 +100,6 @@ TEST_F(InputRunSources, AFrameOfAnotherSizeOnBothSides) {
   write_file(file("right", kBad), right);
   expect_repaired(expected);
   EXPECT_EQ(read_json(folder_ / "report.json")["results"]["frames"], 1);
-}
-
-TEST_F(RunSources, BadFramesInVideosAreRepaired) {
-  // At the beginning of a chunk, a whole chunk, and at the end.
-  const std::vector<int> bad = {5, 10, 11, 12, 13, 14, 19};
-  const FolderContent expected = undisturbed(kVideoOutputs);
-  std::map<int, std::string> whole;
-  for (const int frame : bad) {
-    whole[frame] = frame_bytes("right", frame);
-    write_file(file("right", frame), "no picture");
-  }
-  expect_skipped(bad, kVideoOutputs);
-  for (const std::string video : {"preview", "views"}) {
-    VideoReader reader(out_ + "/" + video + ".mp4");
-    EXPECT_EQ(reader.frame_count(), kFrames) << video;
-  }
-  for (const auto& [frame, bytes] : whole) {
-    write_file(file("right", frame), bytes);
-  }
-  expect_repaired(expected, kVideoOutputs);
-  EXPECT_FALSE(fs::exists(out_ + "/.vantage/segments"));
 }
 
 TEST_F(RunSources, BadFramesBeforeOthersThatBuildOnThem) {
@@ -266,20 +235,6 @@ TEST_F(InputVideoSources, AVideoWithDamageInTheMiddle) {
   for (const auto& [name, bytes] : expected) {
     EXPECT_EQ(read_file(out_ + "/" + name), bytes) << name;
   }
-}
-
-TEST_F(InputVideoSources, AVideoThatEndsInTheMiddleOfAFrame) {
-  succeeds(run_videos("mp4", {}));
-  const FolderContent expected = results_in(out_);
-  fs::remove_all(out_);
-  const std::string whole = read_file(folder_ / "right.mp4");
-  write_file(folder_ / "right.mp4", whole.substr(0, whole.size() * 6 / 10));
-  const int first_bad = lose_the_end("mp4");
-  for (const auto& [name, bytes] : results_in(out_)) {
-    EXPECT_EQ(bytes, expected.at(name)) << name;
-  }
-  repair_the_end("mp4", whole, first_bad);
-  EXPECT_TRUE(same_files(results_in(out_), expected));
 }
 
 /// What cannot be opened is refused before anything else happens.

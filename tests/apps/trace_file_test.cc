@@ -134,14 +134,6 @@ TEST_F(TraceFile, OfARunNestsAndAccountsForAllThreads) {
   }
 }
 
-TEST_F(TraceFile, ChangesNoResult) {
-  const std::string plain = folder_ / "plain";
-  const std::string traced = folder_ / "traced";
-  succeeds(run(plain, {"--save", "disparity,views", "--view", "0.5"}));
-  succeeds(run(traced, {"--save", "disparity,views", "--view", "0.5", "--trace", trace_}));
-  EXPECT_TRUE(same_files(results_in(traced), results_in(plain)));
-}
-
 TEST_F(TraceFile, MayNotBeAnotherOutputNorInAMissingFolder) {
   const std::string left = left_ + "/" + frame_file(0);
   const std::string right = right_ + "/" + frame_file(0);

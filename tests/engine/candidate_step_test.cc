@@ -46,47 +46,6 @@ TEST_P(CandidateStep, EqualsTheOracle) {
 INSTANTIATE_TEST_SUITE_P(Methods, CandidateStep, ::testing::ValuesIn(method_cases({0, 1})),
                          [](const auto& instance) { return instance.param.name; });
 
-/// Maps of whole presets, with pruning, check maps and coarse winners.
-/// A plane whose disparity is half a pixel: without sub-pixel positions only such candidates find
-/// it.
-TEST(CandidateSteps, FindHalfPixels) {
-  constexpr int kWidth = 80;
-  const auto wide = textured_pair(2 * kWidth, 40, {0, 0}, PixelKind::kGreyFloat, 3).left;
-  const auto& fine = std::get<Image<float>>(wide.pixels);
-  Image<float> left(kWidth - 4, 40);
-  Image<float> right(kWidth - 4, 40);
-  for (int y = 0; y < 40; ++y) {
-    // Means of two samples: what is finer than a pixel is left out.
-    const auto pixel = [&](int n) {
-      return (fine.at(n, y) + 2 * fine.at(n + 1, y) + fine.at(n + 2, y)) / 4;
-    };
-    for (int x = 0; x < left.width(); ++x) {
-      left.at(x, y) = pixel(2 * x);
-      right.at(x, y) = pixel(2 * x + 3);
-    }
-  }
-  const Photograph photographs[] = {{std::move(left)}, {std::move(right)}};
-  for (const MatchMethod method : {MatchMethod::kSsd, MatchMethod::kGradient, MatchMethod::kBayes,
-                                   MatchMethod::kDiffusion, MatchMethod::kMembrane}) {
-    MatchOptions options;
-    options.method = method;
-    options.disparities = {0, 4};
-    options.raw = true;
-    options.parameters.subpixel = Subpixel::kNone;
-    options.parameters.candidate_step_px = 0.5;
-    DisparityMaps maps;
-    StereoMatcher(options, execution()).match(photographs[0], photographs[1], {}, maps);
-    int found = 0;
-    int pixels = 0;
-    for (int y = 5; y < 35; ++y) {
-      for (int x = 10; x < 70; ++x, ++pixels) {
-        found += maps.left.disparity_px.at(x, y) == 1.5F ? 1 : 0;
-      }
-    }
-    EXPECT_GE(found, 0.75 * pixels) << static_cast<int>(method);
-  }
-}
-
 TEST(CandidateSteps, AreRefusedWhereTheyHaveNoMeaning) {
   MatchOptions options;
   options.disparities = {0, 2000};

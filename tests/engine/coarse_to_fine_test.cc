@@ -190,52 +190,6 @@ INSTANTIATE_TEST_SUITE_P(
              case_name(std::get<MatchCost>(instance.param));
     });
 
-/// A surface of little texture at disparity 6, with noise that hides it from single pixels and
-/// their next neighbours.
-PhotographPair weakly_textured_pair(int width, int height, int disparity_px) {
-  std::mt19937 random(5);
-  const auto noise = [&] { return static_cast<int>(random() % 13) - 6; };
-  const int wide = width + disparity_px;
-  std::vector<int> world;
-  for (int k = 0; k < wide * height; ++k) {
-    world.push_back(120 + static_cast<int>(random() % 7));
-  }
-  Image<std::uint8_t> left(width, height);
-  Image<std::uint8_t> right(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      const auto seen = [&](int column) {
-        return static_cast<std::uint8_t>(world[static_cast<std::size_t>(y * wide + column)] +
-                                         noise());
-      };
-      left.at(x, y) = seen(x);
-      right.at(x, y) = seen(x + disparity_px);
-    }
-  }
-  return {Photograph{std::move(left)}, Photograph{std::move(right)}};
-}
-
-TEST(CoarseToFineMatcher, FindsWhatOnlyLargeRegionsTell) {
-  constexpr int kDisparity = 6;
-  const auto pair = weakly_textured_pair(120, 90, kDisparity);
-  MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 1, {0, 15});
-  options.raw = true;
-  const auto wrong = [&](int levels, int iterations) {
-    options.parameters.levels = levels;
-    options.parameters.iterations = iterations;
-    const DisparityMaps maps = maps_of(pair, options);
-    int count = 0;
-    for (const auto [x, y] : positions_of({15, 120}, {0, 90})) {
-      count += maps.left.disparity_px.at(x, y) != kDisparity ? 1 : 0;
-    }
-    return count;
-  };
-  const int flat = wrong(1, 10);
-  const int coarse_to_fine = wrong(5, 5);
-  EXPECT_GT(flat, 90 * 105 / 10) << "an easy scene shows nothing";
-  EXPECT_LT(coarse_to_fine, flat / 10);
-}
-
 TEST(CoarseToFineMatcher, OneLevelIsFlat) {
   const auto pair = textured_pair(2, 2, {0, 1}, PixelKind::kGrey8, 3);
   MatchOptions options = options_of(Aggregation::kBayes, MatchCost::kContaminated, 1, {0, 1});

@@ -152,6 +152,23 @@ TEST(FramePairing, ThirdCamerasArePairedWithTheLeftOne) {
   EXPECT_EQ(pairing.frame(2, 0), 0);
   EXPECT_EQ(pairing.frame(2, 1), 2);
   EXPECT_THAT(pairing.found.left_out, ElementsAre(2, 1, 1));
+  const auto error_with = [&](const Names& names, int offset, std::optional<PairBy> by) {
+    const auto other = images("t", names);
+    return error_of([&] { pair_frames({left.get(), right.get(), other.get()}, offset, by); });
+  };
+  EXPECT_THAT(error_with({"2.png"}, 0, PairBy::kName),
+              HasSubstr("no frame has a partner in the sequences of all cameras"));
+  EXPECT_THAT(error_with({"0.png"}, -2, PairBy::kOrder),
+              HasSubstr("no pair has a partner in the sequence of camera 3, which has 1 frames"));
+  const FramePairing in_order =
+      pair_frames({left.get(), right.get(), third.get()}, 0, PairBy::kOrder);
+  EXPECT_EQ(in_order.count, 3);
+  const auto two = images("t", {"5.png", "6.png"});
+  const FramePairing fewer = pair_frames({left.get(), right.get(), two.get()}, 0, PairBy::kOrder);
+  EXPECT_EQ(fewer.count, 2);
+  EXPECT_THAT(fewer.remarks,
+              testing::Contains(HasSubstr("camera 3 has frames for 2 pairs, but the first two "
+                                          "cameras have 3: the last 1 has no partner")));
 }
 
 /// A film of which only the times matter.
@@ -208,6 +225,11 @@ TEST(FramePairing, FilmsByTheTimeOfTheirFrames) {
                 pair_frames({&left, &gap}, 0, PairBy::kName);
               }),
               HasSubstr("frames of films have none"));
+  const auto stills = images("l", {"0.png", "1.png"});
+  EXPECT_THAT(error_of([&] {
+                pair_frames({&left, stills.get()}, 0, PairBy::kTime);
+              }),
+              HasSubstr("it is not known when each frame is shown"));
   // Another year.
   const Film later({1e8}, {25, 1}, 6);
   EXPECT_THAT(

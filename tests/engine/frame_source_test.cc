@@ -243,18 +243,6 @@ TEST(FrameSource, TheIdentityTellsWhetherFilesAreTheSame) {
               testing::StartsWith("video " + (folder / "v.mp4") + ": 1 file, "));
 }
 
-TEST(FrameSource, ABadFrameIsNamed) {
-  const TemporaryFolder folder;
-  put_image(folder / "1.png", 1);
-  put_text(folder / "2.png", "garbage");
-  put_image(folder / "3.png", 3);
-  const auto source = open_frame_source(folder.path().string());
-  Photograph frame;
-  EXPECT_TRUE(source->next(frame));
-  EXPECT_THAT(error_of([&] { source->next(frame); }), HasSubstr("2.png"));
-  EXPECT_EQ(values_of(*source), (std::vector<int>{3}));
-}
-
 TEST(FrameSource, RefusesWhatMatchesNothing) {
   const TemporaryFolder folder;
   const auto refuse = [](const std::filesystem::path& spec, const char* expected) {

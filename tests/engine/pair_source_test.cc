@@ -1,5 +1,6 @@
 #include "engine/sequence/pairs/pair_source.h"
 
+#include "engine/sequence/pairs/supplied_pairs.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/frame_test_support.h"
 #include "tests/test_paths.h"
@@ -554,6 +555,23 @@ TEST(PairSource, OptionsAreChecked) {
   refuse(moving_camera("s", 0), "step is 0, expected 1 to 1000 frames or -1 to -1000");
   refuse(moving_camera("s", -1001), "step is -1001");
   EXPECT_NO_THROW(moving_camera("s", -1000).validate());
+  refuse(two_cameras("tcp://h:1", "tcp://h:1"), "left and right are the same stream");
+  PairSourceOptions stream = two_cameras("tcp://h:1", "tcp://h:2");
+  PairSourceOptions list = listed_in("p");
+  list.pair_by = stream.pair_by = PairBy::kName;
+  refuse(stream, "pair-by is given, expected it with files");
+  refuse(list, "pair-by is given, expected it with files");
+  list.pair_by.reset();
+  list.more = stream.more = {"m"};
+  refuse(stream, "more is given and left is a stream, expected files");
+  refuse(list, "more is given, expected it with left and right only");
+  PairSourceOptions late = two_cameras("l", "r");
+  late.every.first = std::numeric_limits<int>::max();
+  refuse(late, "every starts at frame 2147483647, expected 0 to");
+  PairSourceOptions supplied;
+  supplied.queue = std::make_shared<PairQueue>(1);
+  supplied.every.pairs = 2;
+  refuse(supplied, "every is given, expected it with files only: supply the pairs to take");
 }
 
 /// Real frames, as files and packed into a video.

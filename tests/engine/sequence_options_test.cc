@@ -50,6 +50,18 @@ TEST(SequenceOptions, WhatIsWrongIsNamed) {
                 o.temporal.reuse = Reuse::kFrame;
               }),
               HasSubstr("reuse is frame, expected none with a method without"));
+  EXPECT_THAT(refusal([](Options& o) { o.temporal = {.weight = 1, .reuse = Reuse::kFrame}; }),
+              HasSubstr("temporal-prior is 1 with reuse frame, expected one of them"));
+  EXPECT_THAT(refusal([](Options& o) { o.depth_format = "bmp"; }),
+              HasSubstr("depth-format is 'bmp'"));
+  EXPECT_THAT(refusal([](Options& o) {
+                o.save = {SequenceOutput::kDepth};
+                o.depth_format = "png";
+                o.cloud.max_depth = 1e6;
+              }),
+              HasSubstr("with depth-format png"));
+  EXPECT_THAT(refusal([](Options& o) { o.depth_coding = VideoCoding::kH264; }),
+              HasSubstr("depth-codec is h264"));
 }
 
 }  // namespace vantage::sequence_options_test

@@ -510,6 +510,12 @@ TEST_F(SequenceRunnerTest, AResultThatCannotBeWrittenEndsTheRunEvenWhenItKeepsGo
   EXPECT_THAT(names(folder("a")), ElementsAre("disparity/000000.pfm", "disparity/000001.pfm"));
   fs::remove(folder("a") / "disparity/000002.pfm");
   EXPECT_EQ(run(pairs, folder("a")).frames_before, 2);
+  // A folder in which no file can be made.
+  fs::create_directories(folder("b"));
+  fs::create_directory_symlink("/proc", folder("b") / "disparity");
+  EXPECT_THAT(
+      error_of(pairs, folder("b"), {.keep_going = true}),
+      testing::ContainsRegex("^frame 0: cannot write .*/b/disparity/000000.pfm: No such file"));
 }
 
 TEST_F(SequenceRunnerTest, RepeatedFramesAreRemarked) {
@@ -519,17 +525,6 @@ TEST_F(SequenceRunnerTest, RepeatedFramesAreRemarked) {
   ASSERT_EQ(report.remarks.size(), 2U);
   EXPECT_EQ(report.remarks[0].frame, 2);
   EXPECT_EQ(report.remarks[1].text, "both images are the same as in frame 4");
-}
-
-TEST_F(SequenceRunnerTest, StopFinishesWhatIsUnderWay) {
-  MadeUpPairs pairs(1000);
-  const SequenceReport report = run(pairs, folder("a"), {.stop_after = 1});
-  EXPECT_TRUE(report.interrupted);
-  EXPECT_GE(report.frames, 1);
-  EXPECT_LT(report.frames, 200);
-  EXPECT_EQ(names(folder("a")).size(), static_cast<std::size_t>(report.frames));
-  const DeliveredFrames delivered(SequenceLayout(folder("a"), options_));
-  EXPECT_EQ(delivered.records().size(), static_cast<std::size_t>(report.frames));
 }
 
 TEST(BusyClock, CountsOverlappingActivitiesOnce) {

@@ -163,34 +163,6 @@ TEST_P(SsdDepths, AgreeWithDoubleArithmetic) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SsdDepths, ::testing::Range(0, 5));
 
-TEST(StereoMatcher, FindsAKnownShiftEverywhere) {
-  const int shift = 6;
-  const Photograph wide = random_grey(100 + shift, 40, 256, 11);
-  Image<std::uint8_t> left(100, 40);
-  Image<std::uint8_t> right(100, 40);
-  for (const auto [x, y] : positions_of(100, 40)) {
-    // A left pixel x looks at x − shift in the right image.
-    left.at(x, y) = std::get<Image<std::uint8_t>>(wide.pixels).at(x, y);
-    right.at(x, y) = std::get<Image<std::uint8_t>>(wide.pixels).at(x + shift, y);
-  }
-  MatchOptions options;
-  options.method = MatchMethod::kSsd;
-  options.disparities = {0, 15};
-  DisparityMaps maps;
-  StereoMatcher(options, execution()).match({std::move(left)}, {std::move(right)}, {}, maps);
-  for (const auto [x, y] : positions_of(100, 40)) {
-    // Columns without a partner in the other image may agree by chance within the tolerance.
-    if (x >= shift) {
-      ASSERT_NEAR(maps.left.disparity_px.at(x, y), shift, 0.2) << x << ", " << y;
-      ASSERT_EQ(maps.left.unmatched.at(x, y), 0) << x << ", " << y;
-    }
-    if (x < 100 - shift) {
-      ASSERT_NEAR(maps.right.disparity_px.at(x, y), shift, 0.2) << x << ", " << y;
-      ASSERT_EQ(maps.right.unmatched.at(x, y), 0) << x << ", " << y;
-    }
-  }
-}
-
 TEST(StereoMatcher, RefinedMapsAreDense) {
   MatchOptions options;
   options.disparities = {4, 20};  // the left columns have no candidate at all

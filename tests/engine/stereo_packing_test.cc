@@ -186,25 +186,6 @@ TYPED_TEST(StereoPackingTest, HalfSizesAreStretchedByCubicInterpolation) {
   }
 }
 
-TEST(StereoPacking, AHalfSizeRampComesBack) {
-  Photograph left{Image<float>(40, 40)};
-  auto& pixels = std::get<Image<float>>(left.pixels);
-  for (const auto [x, y] : positions_of(40, 40)) {
-    pixels.at(x, y) = 0.01F * static_cast<float>(x) + 0.012F * static_cast<float>(y);
-  }
-  for (const char* name : {"sbs2l", "ab2r"}) {
-    Photograph packed;
-    pack_stereo(left, left, packing_of(name), packed);
-    Photograph left_again;
-    Photograph right_again;
-    unpack_stereo(packed, packing_of(name), left_again, right_again);
-    EXPECT_TRUE(same(left_again, right_again));
-    for (const auto [x, y] : positions_of({4, 36}, {4, 36})) {
-      ASSERT_NEAR(value(left_again, x, y), pixels.at(x, y), 1e-5) << name;
-    }
-  }
-}
-
 TEST(StereoPacking, NamesAndSynonyms) {
   EXPECT_EQ(stereo_packing_names().size(), 18U);
   for (const char* ending : {"l", "r", "2l", "2r"}) {

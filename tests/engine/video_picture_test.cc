@@ -2,11 +2,9 @@
 
 #include "engine/io/video/video_picture.h"
 
-#include "engine/io/images/photograph_io.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/libav_scaler.h"
 #include "engine/io/video/video_io.h"
-#include "engine/sequence/sequence_runner.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/video_test_support.h"
 
@@ -17,11 +15,8 @@ extern "C" {
 
 namespace vantage::video_picture_test {
 
-namespace fs = std::filesystem;
-
 constexpr FrameRate kRate{10, 1};
 constexpr int kFrames = 24;
-constexpr int kGroup = 7;
 
 TEST(VideoPicture, ThreadsMakeTheSamePhotographsInAnyOrder) {
   const TemporaryFolder folder;
@@ -88,79 +83,6 @@ TEST(VideoPicture, ReferencesToOnePictureAreConvertedApart) {
     EXPECT_EQ(std::get<Image<std::uint8_t>>(photograph.pixels).at(2, 0), 77);
   }
   EXPECT_TRUE(VideoPicture().share().is_empty());
-}
-
-/// A run over a packed video; what it says of frames, and its files.
-struct Outcome {
-  std::map<int, std::string> skipped;
-  std::map<std::string, std::vector<std::uint8_t>> files;
-};
-
-Outcome run_over(const fs::path& video, const fs::path& folder, int threads, int in_flight) {
-  SequenceOptions options;
-  options.match.disparities = {0, 7};
-  options.save = {SequenceOutput::kDisparity, SequenceOutput::kStereo};
-  PairSourceOptions input;
-  input.stereo = video.string();
-  input.packing = StereoPacking{};
-  const auto pairs = open_pair_source(input);
-  Execution execution({.threads = threads});
-  const SequenceLayout layout(folder, options);
-  RunIdentity identity;
-  identity.frame_count = kFrames;
-  RunJournal journal(layout.journal_folder(), identity, JournalOpening::kNew, "all");
-  const SequenceRun run{.pairs = *pairs,
-                        .selection = {.frame_count = kFrames,
-                                      .chunk_frames = options.chunk_frames,
-                                      .frames = std::nullopt,
-                                      .shard = std::nullopt},
-                        .frame_size = ImageExtent{32, 48},
-                        .in_flight = in_flight,
-                        .keep_going = true,
-                        .on_progress = {}};
-  Outcome outcome;
-  for (const FrameRemark& skipped :
-       SequenceRunner(options, execution).run(run, layout, journal).skipped) {
-    outcome.skipped[skipped.frame] = skipped.text;
-  }
-  for (const char* kind : {"disparity", "stereo"}) {
-    for (const auto& entry : fs::directory_iterator(folder / kind)) {
-      outcome.files[kind + ("/" + entry.path().filename().string())] = bytes_of(entry.path());
-    }
-  }
-  return outcome;
-}
-
-TEST(VideoPicture, RunsOverDamagedVideosAreTheSameHoweverManyWork) {
-  const TemporaryFolder folder;
-  put_closed_groups_video(folder / "a.mp4", kFrames, kRate, kGroup);
-  const auto packets = video_packets(folder / "a.mp4");
-  auto bytes = bytes_of(folder / "a.mp4");
-  std::fill_n(bytes.begin() + packets[kGroup + 2].offset, 4, std::uint8_t{0xFF});
-  put_bytes(folder / "a.mp4", bytes);
-  std::optional<Outcome> expected;
-  for (const auto& [threads, in_flight] : {std::pair{1, 1}, {1, 4}, {2, 2}, {2, 6}, {4, 9}}) {
-    SCOPED_TRACE(testing::Message() << threads << " threads, " << in_flight << " in flight");
-    const fs::path out = folder / (std::to_string(threads) + "-" + std::to_string(in_flight));
-    const Outcome outcome = run_over(folder / "a.mp4", out, threads, in_flight);
-    if (!expected) {
-      expected = outcome;
-      ASSERT_FALSE(outcome.skipped.empty());
-      EXPECT_GE(outcome.skipped.begin()->first, kGroup);
-      EXPECT_EQ(outcome.skipped.rbegin()->first, 2 * kGroup - 1);
-      EXPECT_EQ(outcome.files.size(), 2 * (kFrames - outcome.skipped.size()));
-      for (int frame = 0; frame < kFrames; ++frame) {
-        if (!outcome.skipped.contains(frame)) {
-          const std::string number = std::to_string(frame);
-          const fs::path file =
-              out / "stereo" / (std::string(6 - number.size(), '0') + number + ".png");
-          EXPECT_EQ(number_of_frame(read_photograph(file.string())), frame);
-        }
-      }
-    }
-    EXPECT_EQ(outcome.skipped, expected->skipped);
-    EXPECT_EQ(outcome.files, expected->files);
-  }
 }
 
 }  // namespace vantage::video_picture_test

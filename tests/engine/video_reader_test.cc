@@ -186,50 +186,6 @@ TEST(VideoReader, ShowsWhatAnEditListShows) {
   EXPECT_THAT(frame_numbers(folder / "b.mp4"), ElementsAre(3, 4, 5, 6, 7, 8, 9, 10, 11));
 }
 
-TEST(VideoReader, SkippedFramesAreTheSameFrames) {
-  const TemporaryFolder folder;
-  put_numbered_video(folder / "a.mp4", 15, {10, 1});
-  VideoReader reader(folder / "a.mp4");
-  Photograph frame;
-  for (int i = 0; i < 15; ++i) {
-    if (i % 4 == 2) {
-      ASSERT_TRUE(reader.read(frame));
-      EXPECT_EQ(number_of_frame(frame), i);
-    } else {
-      ASSERT_TRUE(reader.skip());
-    }
-  }
-  EXPECT_FALSE(reader.skip());
-  EXPECT_FALSE(reader.read(frame));
-}
-
-/// The container is whole and most of what is in it is not.
-TEST(VideoReader, DamagedFramesAreAnErrorThatNamesTheFrame) {
-  const TemporaryFolder folder;
-  {
-    VideoWriter writer(folder / "a.mp4", 64, 48, {});
-    for (unsigned i = 0; i < 20; ++i) {
-      writer.write(noise<std::uint8_t>(64, 48, 3, i));
-    }
-    writer.finish();
-  }
-  auto bytes = bytes_of(folder / "a.mp4");
-  const std::string text(bytes.begin(), bytes.end());
-  const std::size_t begin = text.find("mdat") + 4;
-  const std::size_t end = bytes.size();  // the index comes first
-  ASSERT_LT(begin, end);
-  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(begin + (end - begin) / 4),
-            bytes.begin() + static_cast<std::ptrdiff_t>(end - 4), std::uint8_t{0});
-  put_bytes(folder / "a.mp4", bytes);
-  const std::string error = error_of([&] {
-    VideoReader reader(folder / "a.mp4");
-    Photograph frame;
-    while (reader.read(frame)) {
-    }
-  });
-  EXPECT_THAT(error, testing::AllOf(HasSubstr("frame "), HasSubstr("expected 20")));
-}
-
 /// Frames before the damaged one are given out, and that one is named, whatever the threads.
 TEST(VideoReader, OneDamagedPacketIsAnErrorAtItsFrame) {
   const TemporaryFolder folder;

@@ -52,7 +52,7 @@ class TextHeader {
     }
     return value;
   }
-  /// Position directly after the last word.
+  /// Position directly after the last word: that of a blank, or the end of the file.
   [[nodiscard]] std::size_t offset() const { return offset_; }
   /// Skips the blanks and comments before the next word; false at the end of the file.
   bool skip_blanks() {
@@ -182,9 +182,6 @@ PnmImage decode_pnm(const FileBytes& file) {
       file.fail(fmt::format("its largest value is {}, expected 1..65535", header.max_value));
     }
   }
-  if (!is_blank(file.byte(words.offset()))) {
-    file.fail("its header does not end with white space");
-  }
   const std::size_t begin = words.offset() + 1;
   if (header.is_text()) {
     // At least one digit each, so that a short file is refused before allocation.
@@ -260,9 +257,6 @@ Image<float> decode_pfm(const FileBytes& file) {
   // Some writers add blanks or a carriage return after the scale: the data starts after the line
   // end, or after the first blank if there is no line end among the blanks.
   std::size_t begin = header.offset();
-  if (!is_blank(file.byte(begin))) {
-    file.fail("its header does not end with a line break");
-  }
   while (file.byte(begin) != '\n' && begin + 1 < file.size() && is_blank(file.byte(begin + 1)) &&
          file.size() - (begin + 1) > payload) {
     ++begin;
