@@ -11,20 +11,43 @@
 namespace vantage {
 namespace {
 
-void check_against(const MapToRefine& to_refine, const MapToRefine& other, double tolerance_px,
-                   Execution& execution) {
+OtherCameraView& other_view(const MapToRefine& map, RefinementWork& work) {
+  return work.other_views[map.side == Side::kLeft ? 0 : 1];
+}
+
+void copy_map(const DisparityMap& map_px, Execution& execution, DisparityMap& copy_px) {
+  copy_px.resize(map_px.width(), map_px.height());
+  execution.for_each_row(
+      map_px.height(), [&](int y) { std::copy_n(map_px.row(y), map_px.width(), copy_px.row(y)); });
+}
+
+void check_against(const RefinementOptions& options, const MapToRefine& to_refine,
+                   const MapToRefine& other, Execution& execution, RefinementWork& work) {
   MatchedMap& map = *to_refine.map;
   const MatchedMap& partner = *other.map;
-  if (map.disparity_y_px.empty()) {
-    cross_check(map.disparity_px.view(),
-                other.check_px.empty() ? partner.disparity_px.view() : other.check_px,
-                to_refine.side, tolerance_px, execution, map.unmatched,
-                1.0F / static_cast<float>(to_refine.pixels_per_column));
+  const ImageView<const float> map_px = std::as_const(map.disparity_px).view();
+  if (!map.disparity_y_px.empty()) {
+    cross_check({map_px, map.disparity_y_px.view()},
+                {partner.disparity_px.view(), partner.disparity_y_px.view()}, to_refine.side,
+                options.cross_check_px, execution, map.unmatched);
     return;
   }
-  cross_check({map.disparity_px.view(), map.disparity_y_px.view()},
-              {partner.disparity_px.view(), partner.disparity_y_px.view()}, to_refine.side,
-              tolerance_px, execution, map.unmatched);
+  const ImageView<const float> check_px =
+      other.check_px.empty() ? partner.disparity_px.view() : other.check_px;
+  const float columns_per_px = 1.0F / static_cast<float>(to_refine.pixels_per_column);
+  cross_check(map_px, check_px, to_refine.side, options.cross_check_px, execution, map.unmatched,
+              columns_per_px);
+  if (options.fill == Fill::kFarther) {
+    OtherCameraView& view = other_view(to_refine, work);
+    view.side = to_refine.side;
+    view.columns_per_px = columns_per_px;
+    view.map_px = check_px;
+    if (other.check_px.empty() && other.is_result) {
+      copy_map(partner.disparity_px, execution, view.copy_px);
+      view.map_px = std::as_const(view.copy_px).view();
+    }
+    keep_matched(map_px, options.cross_check_px, execution, work.of_partner, view);
+  }
 }
 
 void check_against_partners(const MapToRefine& to_refine, double tolerance_px, Execution& execution,
@@ -63,6 +86,15 @@ SurfaceEnergy surface_energy(Fill fill) {
   return fill == Fill::kThinPlate ? SurfaceEnergy::kThinPlate : SurfaceEnergy::kMembrane;
 }
 
+bool takes_medians(Fill fill) {
+  return fill != Fill::kConstant && fill != Fill::kLinear && fill != Fill::kNone;
+}
+
+/// Half the columns tell too little of slopes to take planes by default.
+bool takes_planes(Fill fill, int pixels_per_column) {
+  return fill == Fill::kPlanes || (fill == Fill::kFarther && pixels_per_column == 1);
+}
+
 using MapsToRefine = std::span<const MapToRefine* const>;
 
 void snap_edges(const RefinementOptions& options, MapsToRefine maps, Execution& execution,
@@ -91,9 +123,9 @@ void fit_surfaces(const RefinementOptions& options, MapsToRefine maps, Execution
   }
 }
 
-/// Makes one map dense.
-void fill(const RefinementOptions& options, const MapToRefine& map, Execution& execution,
-          RefinementWork& work) {
+/// Makes one map dense. is_checked: against the other one.
+void fill(const RefinementOptions& options, const MapToRefine& map, bool is_checked,
+          Execution& execution, RefinementWork& work) {
   const bool is_canonical = fills_uniform_regions(options.fill);
   MatchedMap& matched = *map.map;
   if (map.kept != nullptr) {
@@ -118,15 +150,19 @@ void fill(const RefinementOptions& options, const MapToRefine& map, Execution& e
       unmatched = &work.rest;
     }
     fill_unmatched(*unmatched, map.side, options.fill, execution, *component_px);
-    if (options.fill == Fill::kMedian || options.fill == Fill::kPlanes || is_canonical) {
+    if (takes_medians(options.fill)) {
       take_filled_medians(*unmatched, *map.image, median_grid(map), execution, work.filled_medians,
                           *component_px,
                           map.kept != nullptr && !is_canonical ? &map.kept->changed() : nullptr);
     }
   }
-  if (options.fill == Fill::kPlanes && matched.disparity_y_px.empty()) {
+  if (takes_planes(options.fill, map.pixels_per_column) && matched.disparity_y_px.empty()) {
     fill_border_planes(matched.unmatched, map.side, map.pixels_per_column, map.search, execution,
                        matched.disparity_px);
+  }
+  if (is_checked && options.fill == Fill::kFarther && matched.disparity_y_px.empty()) {
+    mend_contradicted(matched.unmatched, other_view(map, work), work.filled_medians, execution,
+                      work.of_partner, matched.disparity_px);
   }
   if (map.kept != nullptr) {
     if (!is_canonical) {  // whose regions reach over many tiles
@@ -142,7 +178,8 @@ std::size_t held_bytes(const RefinementWork& work) {
   return held_bytes(work.edge_snapping) + held_bytes(work.speckles[0]) +
          held_bytes(work.speckles[1]) + held_bytes(work.surface_fit) +
          held_bytes(work.filled_medians) + held_bytes(work.uniform_pixels) +
-         held_bytes(work.uniform) + held_bytes(work.rest) + held_bytes(work.of_partner);
+         held_bytes(work.uniform) + held_bytes(work.rest) + held_bytes(work.of_partner) +
+         held_bytes(work.other_views[0]) + held_bytes(work.other_views[1]);
 }
 
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,
@@ -163,10 +200,10 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
     if (has_partners) {
       check_against_partners(map, options.cross_check_px, execution, work);
     } else if (map.is_result) {
-      check_against(map, *other, options.cross_check_px, execution);
+      check_against(options, map, *other, execution, work);
     }
     if (other != nullptr && other->is_result) {
-      check_against(*other, map, options.cross_check_px, execution);
+      check_against(options, *other, map, execution, work);
     }
   }
   if (other != nullptr && !(map.is_result && other->is_result)) {
@@ -208,7 +245,7 @@ void refine_maps(const RefinementOptions& options, const MapToRefine& map, const
   }
   start_step("fill");
   for (const MapToRefine* one : maps) {
-    fill(options, *one, execution, work);
+    fill(options, *one, is_checked && !has_partners, execution, work);
   }
 }
 

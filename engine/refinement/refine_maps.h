@@ -14,6 +14,7 @@
 #include "engine/refinement/edge_snapping.h"
 #include "engine/refinement/filled_medians.h"
 #include "engine/refinement/kept_refinement.h"
+#include "engine/refinement/occlusion_consistency.h"
 #include "engine/refinement/refinement.h"
 #include "engine/refinement/refinement_options.h"
 #include "engine/refinement/speckles.h"
@@ -65,9 +66,10 @@ struct RefinementWork {
   SurfaceFitWork surface_fit;
   FilledMediansWork filled_medians;
   UniformPixelsWork uniform_pixels;
-  Mask uniform;  ///< pixels of regions without texture
-  Mask rest;     ///< unmatched pixels that are not
-  Mask of_partner;
+  Mask uniform;                                ///< pixels of regions without texture
+  Mask rest;                                   ///< unmatched pixels that are not
+  Mask of_partner;                             ///< of one of several maps; pixels to mend
+  std::array<OtherCameraView, 2> other_views;  ///< of the left and of the right map
 };
 
 std::size_t held_bytes(const RefinementWork& work);

@@ -11,8 +11,23 @@
 namespace vantage {
 namespace {
 
-// Neighbours whose disparities differ by at most this are one surface (EQUATIONS §6).
-constexpr float kFillSurfaceStepPx = 1;
+// Both sides of a run are one surface (EQUATIONS §5.4); of planes that slopes may have, too (§5.7).
+constexpr kernels::SurfaceStep kLevelStep = {.px = 1};
+constexpr kernels::SurfaceStep kSlantedStep = {.px = 1, .px_per_column = 0.1F};
+
+bool fill_row(const std::uint8_t* unmatched, Side side, Fill fill, int width, float* row_px) {
+  const auto background =
+      side == Side::kLeft ? kernels::BackgroundSide::kLeft : kernels::BackgroundSide::kRight;
+  switch (fill) {
+    case Fill::kFarther:
+      return kernels::fill_unmatched_row_linearly(unmatched, kernels::BackgroundSide::kFarther,
+                                                  kSlantedStep, width, row_px);
+    case Fill::kLinear:
+      return kernels::fill_unmatched_row_linearly(unmatched, background, kLevelStep, width, row_px);
+    default:
+      return kernels::fill_unmatched_row(unmatched, background, width, row_px);
+  }
+}
 
 kernels::CrossCheckRow row_to_check(ImageView<const float> map_px, int y, Side side,
                                     double tolerance_px, float columns_per_px, Mask& unmatched) {
@@ -103,16 +118,10 @@ void fill_unmatched(const Mask& unmatched, Side side, Fill fill, Execution& exec
     return;
   }
   const int height = map_px.height();
-  const auto background =
-      side == Side::kLeft ? kernels::BackgroundSide::kLeft : kernels::BackgroundSide::kRight;
   std::vector<char> has_match(static_cast<std::size_t>(height));
   execution.for_each_row(height, [&](int y) {
-    const std::uint8_t* mask = unmatched.row(y);
-    float* row = map_px.row(y);
     has_match[static_cast<std::size_t>(y)] =
-        fill == Fill::kLinear ? kernels::fill_unmatched_row_linearly(
-                                    mask, background, kFillSurfaceStepPx, map_px.width(), row)
-                              : kernels::fill_unmatched_row(mask, background, map_px.width(), row);
+        fill_row(unmatched.row(y), side, fill, map_px.width(), map_px.row(y));
   });
 
   int above = -1;  // last row with a match

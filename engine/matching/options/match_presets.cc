@@ -61,7 +61,7 @@ PresetSettings preset_settings(MatchPreset preset, NoiseKind kind) {
       settings.refinement.cross_check_px = 1.5;
       settings.refinement.speckle_size_px = 90;
       settings.refinement.surface_fit_px = 14;
-      settings.refinement.fill = Fill::kMedian;
+      settings.refinement.fill = Fill::kFarther;
       break;
     case MatchPreset::kBalanced:
       settings.parameters.census_thresholds = 3;
@@ -69,14 +69,14 @@ PresetSettings preset_settings(MatchPreset preset, NoiseKind kind) {
       settings.parameters.iterations = 3;
       settings.parameters.final_iterations = 1;
       settings.refinement.surface_fit_step_px = 2;
-      settings.refinement.fill = Fill::kPlanes;
+      settings.refinement.fill = Fill::kFarther;
       break;
     case MatchPreset::kQuality:
       settings.parameters.census_thresholds = 3;
       settings.parameters.mu = 0.33;
       settings.parameters.iterations = 10;
       settings.parameters.final_iterations = 3;
-      settings.refinement.fill = Fill::kPlanes;
+      settings.refinement.fill = Fill::kFarther;
       break;
   }
   if (kind != NoiseKind::kNone) {

@@ -113,13 +113,11 @@ const EnumNames<Subpixel>& names_of(Subpixel /*type*/) {
 }
 
 const EnumNames<Fill>& names_of(Fill /*type*/) {
-  static const EnumNames<Fill> names = {{"constant", Fill::kConstant},
-                                        {"linear", Fill::kLinear},
-                                        {"median", Fill::kMedian},
-                                        {"planes", Fill::kPlanes},
-                                        {"canonical", Fill::kCanonical},
-                                        {"thin-plate", Fill::kThinPlate},
-                                        {"none", Fill::kNone}};
+  static const EnumNames<Fill> names = {
+      {"constant", Fill::kConstant},    {"linear", Fill::kLinear},
+      {"median", Fill::kMedian},        {"planes", Fill::kPlanes},
+      {"farther", Fill::kFarther},      {"canonical", Fill::kCanonical},
+      {"thin-plate", Fill::kThinPlate}, {"none", Fill::kNone}};
   return names;
 }
 
