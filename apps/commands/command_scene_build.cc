@@ -34,7 +34,9 @@ void add_scene_build_settings(Settings& settings, SceneBuildJob& job) {
   add_file_settings(settings, job);
   add_match_settings(settings, job.match);
   settings.start_group("Check");
-  add_rows_setting(settings, job.rows);
+  add_rows_setting(settings, job.rows).help =
+      "Rows that do not correspond, of cameras in a row or grid. auto: images that differ from "
+      "their neighbours in a row by a smooth offset of up to a few pixels are resampled";
   add_rectification_check_setting(
       settings, job.check_rectification,
       "Accept neighbours as they are: correct no rows, and do not check that they correspond and "
