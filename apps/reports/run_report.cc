@@ -11,27 +11,13 @@
 #include "apps/reports/trace_file.h"
 #include "engine/build_info.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/options/emptied_value.h"
 #include "engine/simd.h"
 #include "engine/thread_placement.h"
 #include "scheduler/trace_summary.h"
 
 namespace vantage::apps {
 namespace {
-
-/// Leaves nothing in `value` for its destructor, which allocates and must not fail.
-void empty_without_memory(SettingValue& value) noexcept {
-  if (auto* const object = value.get_ptr<SettingValue::object_t*>()) {
-    for (auto& member : *object) {
-      empty_without_memory(member.second);
-    }
-    object->clear();
-  } else if (auto* const array = value.get_ptr<SettingValue::array_t*>()) {
-    for (SettingValue& element : *array) {
-      empty_without_memory(element);
-    }
-    array->clear();
-  }
-}
 
 /// A memory figure of this process; 0 if the system does not provide it.
 std::size_t process_bytes(std::string_view name) {

@@ -13,6 +13,7 @@
 #include "engine/io/files/encoded_text.h"
 #include "engine/io/files/json_text.h"
 #include "engine/io/video/stream_input.h"
+#include "engine/options/emptied_value.h"
 #include "engine/options/match_settings.h"
 #include "engine/sequence/journal/run_journal.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -67,7 +68,8 @@ std::optional<SettingValue> setting_to_resume(const RunJob& job, const char* nam
 }  // namespace
 
 std::string sources_of(const RunJob& job, const Settings& settings) {
-  const SettingValue values = settings.values();
+  const LargeValue all{settings.values()};
+  const SettingValue& values = all.value;
   SettingValue sources = {{kKeepGoing, job.keep_going}};
   for (const char* name : kSources) {
     const auto stored = [](const SettingValue& path) {

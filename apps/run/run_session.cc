@@ -23,6 +23,7 @@
 #include "engine/jobs/list_columns.h"
 #include "engine/matching/pair_matcher.h"
 #include "engine/matching/range_estimation.h"
+#include "engine/options/emptied_value.h"
 #include "engine/options/frame_step_setting.h"
 #include "engine/sequence/journal/delivered_frames.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -53,7 +54,8 @@ void read_first_streamed_pair(PairSource& pairs, int first, FramePair& pair) {
 
 RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSession& session) {
   RunIdentity identity;
-  SettingValue values = settings.result_values();
+  LargeValue all{settings.result_values()};
+  SettingValue& values = all.value;
   values["fps"] = to_string(job.sequence.frame_rate);
   for (const auto& [name, poses] :
        {std::pair("pose", &job.views.poses), {"path", &job.views.path}}) {

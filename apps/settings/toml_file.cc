@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "engine/error.h"
 #include "engine/quoted_text.h"
@@ -76,17 +77,19 @@ bool has_too_deep_key(std::string_view text) {
 
 SettingValue read_file(const std::string& path, std::string_view expected, Tables tables) {
   std::ifstream file(path, std::ios::binary);
-  file.peek();  // a folder opens like a file and fails here
-  if (!file.is_open() || file.bad()) {
+  std::string content;
+  for (std::vector<char> block(std::size_t{1} << 16); file;) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    content.append(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  if (!file.is_open() || file.bad()) {  // a folder opens like a file
     throw Error(fmt::format("{}: cannot be read, expected {}", path, expected));
   }
-  std::ostringstream content;
-  content << file.rdbuf();
-  if (has_too_deep_key(content.view())) {
+  if (has_too_deep_key(content)) {
     throw UsageError(fmt::format("{}: a key has more than 64 parts, expected {}", path, expected));
   }
   try {
-    const toml::table table = toml::parse(content.view(), path);
+    const toml::table table = toml::parse(content, path);
     SettingValue values = SettingValue::object();
     for (const auto& [key, node] : table) {
       values[std::string(key.str())] = from_toml(node, path, key.str(), tables);

@@ -50,9 +50,10 @@ void SceneBuildOptions::validate() const {
   }
 }
 
-DisparityMaps EdgeMaps::match(BuiltEdge& built, MatchReport* report) const {
-  DisparityMaps maps =
-      scene_.is_posed() ? maps_of_posed(built, report) : maps_on_layout(built, report);
+DisparityMaps EdgeMaps::match(std::array<Photograph, 2> images, BuiltEdge& built,
+                              MatchReport* report) const {
+  DisparityMaps maps = scene_.is_posed() ? maps_of_posed(images, built, report)
+                                         : maps_on_layout(images, built, report);
   if (options_.check_rectification) {
     require_matched(built.stored.matched_share, built.stored.disparities, built.rectification);
   }
@@ -96,12 +97,12 @@ std::array<Photograph, 2> EdgeMaps::photographs_of(const SceneEdge& edge) const 
   return {photograph(edge.first), photograph(edge.second)};
 }
 
-DisparityMaps EdgeMaps::maps_of_posed(BuiltEdge& built, MatchReport* report) const {
+DisparityMaps EdgeMaps::maps_of_posed(const std::array<Photograph, 2>& photographs,
+                                      BuiltEdge& built, MatchReport* report) const {
   const SceneEdge& edge = built.stored.edge;
   const auto camera = [&](int vertex) {
     return scene_.images[static_cast<std::size_t>(vertex)].camera.value();
   };
-  const std::array<Photograph, 2> photographs = photographs_of(edge);
   const auto start = std::chrono::steady_clock::now();
   const RectifiedEdge rectified = rectify_edge(
       calibration_of(camera(edge.first), camera(edge.second), scene_.width_px, scene_.height_px),
@@ -126,9 +127,9 @@ DisparityMaps EdgeMaps::maps_of_posed(BuiltEdge& built, MatchReport* report) con
           .right = rectified.pair.on_photograph(Side::kRight, found.right, scene_.focal_length_px)};
 }
 
-DisparityMaps EdgeMaps::maps_on_layout(BuiltEdge& built, MatchReport* report) const {
+DisparityMaps EdgeMaps::maps_on_layout(std::array<Photograph, 2>& images, BuiltEdge& built,
+                                       MatchReport* report) const {
   const SceneEdge& edge = built.stored.edge;
-  std::array<Photograph, 2> images = photographs_of(edge);
   for (Photograph& image : images) {
     if (edge.is_vertical) {
       image = transposed(image);

@@ -67,14 +67,18 @@ class EdgeMaps {
            const StoredScene& scene, Execution& execution)
       : options_(options), images_(images), scene_(scene), execution_(execution) {}
 
+  /// Reads the images of an edge. Throws Error.
+  [[nodiscard]] std::array<Photograph, 2> photographs_of(const SceneEdge& edge) const;
   /// The maps of `built.stored.edge` on the grids of its images; sets the other values of `built`
   /// but the files. Throws Error where the check refuses the edge.
-  [[nodiscard]] DisparityMaps match(BuiltEdge& built, MatchReport* report) const;
+  [[nodiscard]] DisparityMaps match(std::array<Photograph, 2> images, BuiltEdge& built,
+                                    MatchReport* report) const;
 
  private:
-  [[nodiscard]] std::array<Photograph, 2> photographs_of(const SceneEdge& edge) const;
-  [[nodiscard]] DisparityMaps maps_on_layout(BuiltEdge& built, MatchReport* report) const;
-  [[nodiscard]] DisparityMaps maps_of_posed(BuiltEdge& built, MatchReport* report) const;
+  [[nodiscard]] DisparityMaps maps_on_layout(std::array<Photograph, 2>& images, BuiltEdge& built,
+                                             MatchReport* report) const;
+  [[nodiscard]] DisparityMaps maps_of_posed(const std::array<Photograph, 2>& photographs,
+                                            BuiltEdge& built, MatchReport* report) const;
   /// Matches images whose rows correspond; `scale`: factor of the given disparities.
   [[nodiscard]] DisparityMaps match_rows(const std::array<Photograph, 2>& images, double scale,
                                          BuiltEdge& built, MatchReport* report) const;

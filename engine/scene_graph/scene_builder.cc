@@ -227,9 +227,12 @@ BuiltEdge SceneBuilder::build(int edge, MatchReport* report) {
   BuiltEdge built;
   StoredEdge& result = built.stored;
   result.edge = edges_.at(static_cast<std::size_t>(edge));
+  const EdgeMaps edge_maps(options_, images_, scene_, execution_);
+  // What cannot be read now is no property of the edge, to be remembered.
+  std::array<Photograph, 2> photographs = edge_maps.photographs_of(result.edge);
   DisparityMaps maps;
   try {
-    maps = EdgeMaps(options_, images_, scene_, execution_).match(built, report);
+    maps = edge_maps.match(std::move(photographs), built, report);
   } catch (const UsageError&) {
     throw;
   } catch (const Error& error) {

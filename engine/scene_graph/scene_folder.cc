@@ -1,7 +1,9 @@
 #include "engine/scene_graph/scene_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstddef>
 #include <set>
 #include <system_error>
@@ -9,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/file_descriptor.h"
 #include "engine/io/files/temporary_name.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
@@ -54,8 +57,10 @@ bool is_there(const fs::path& folder, const StoredFile& file) {
 
 fs::path scene_lock_file(const fs::path& folder) {
   make_folder(folder / "maps");
-  const fs::path file = folder / ".lock";
-  create_text_file(file, "");
+  fs::path file = folder / ".lock";
+  if (!FileDescriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666)).valid()) {
+    fail_to_write(file, errno);
+  }
   return file;
 }
 

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -14,6 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/io/files/file_descriptor.h"
 #include "engine/io/files/json_text.h"
 #include "engine/quoted_text.h"
@@ -129,21 +128,10 @@ std::optional<std::string> text_of_file(const fs::path& path) {
   if (status.type() == fs::file_type::not_found) {
     return std::nullopt;
   }
-  if (error) {
-    throw Error(fmt::format("{}: {}", path.string(), error.message()));
-  }
-  if (!fs::is_regular_file(status)) {
-    throw Error(fmt::format("{}: it is not a regular file", path.string()));
-  }
-  if (fs::file_size(path, error) > kMaxBytes) {
+  if (fs::is_regular_file(status) && fs::file_size(path, error) > kMaxBytes) {
     throw Error(fmt::format("{}: it is larger than any tuning file", path.string()));
   }
-  std::ifstream stream(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), {});
-  if (!stream.is_open() || stream.bad()) {
-    throw Error(fmt::format("{}: {}", path.string(), std::generic_category().message(errno)));
-  }
-  return text;
+  return read_file_text(path, true);
 }
 
 /// The list of entries; throws Error if the document has another format.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdlib>
+#include <map>
 #include <sstream>
 
 #include "tests/apps/run_fixture.h"
@@ -18,16 +19,23 @@ inline Words preloaded(const std::string& library, const Words& variables) {
       variables);
 }
 
-/// Environment in which something happens at call number `call` of those that change files below
-/// `folder`: "KILL" ends the process before it, "FULL" is a full disk from then on.
+/// Environment in which files below `folder` have a fault of tests/preload/io_faults.cc: "KILL"
+/// ends the process before a call, "FAIL" lets one fail, "SPACE" is a full disk, "SHORT" moves few
+/// bytes.
+inline Words fault_at(const std::string& fault, const std::string& value,
+                      const std::string& folder) {
+  return preloaded(test_paths::io_faults(),
+                   {"IO_FAULTS_FOLDER=" + folder, "IO_FAULTS_" + fault + "=" + value});
+}
 inline Words fault_at(const std::string& fault, int call, const std::string& folder) {
-  return preloaded(test_paths::io_faults(), {"IO_FAULTS_FOLDER=" + folder,
-                                             "IO_FAULTS_" + fault + "=" + std::to_string(call)});
+  return fault_at(fault, std::to_string(call), folder);
 }
 
-/// What the calls that change files below a folder were, in order: "rename", "write", …
+/// The calls on files below a folder, in order.
 struct FileCalls {
-  Words names;
+  Words names;                        ///< of those that change files: "rename", "write", …
+  std::map<std::string, int> counts;  ///< how many of each name there were, "read" and "close" too
+  std::vector<int> writes;            ///< bytes of each write
 
   [[nodiscard]] int count() const { return static_cast<int>(names.size()); }
   /// Numbers (from 1) of those of this name.
@@ -52,19 +60,27 @@ struct FileCalls {
   }
 };
 
-/// Runs the program to its end and notes its calls that change files below `folder`.
+/// Runs the program to its end and notes its calls on files below `folder`.
 inline FileCalls calls_of(const Words& arguments, const std::string& folder) {
   const TemporaryFolder notes;
   succeeds(run_vantage(
       arguments, joined(fault_at("KILL", -1, folder), {"IO_FAULTS_COUNT=" + (notes / "count")})));
   std::istringstream lines(read_file(notes / "count"));
   std::size_t count = 0;
+  std::size_t noted = 0;
   std::string name;
+  int bytes = 0;
   FileCalls calls;
-  for (lines >> count; lines >> name;) {
-    calls.names.push_back(name);
+  for (lines >> count; lines >> name >> bytes; ++noted) {
+    ++calls.counts[name];
+    if (name != "read" && name != "close") {
+      calls.names.push_back(name);
+    }
+    if (bytes > 0) {
+      calls.writes.push_back(bytes);
+    }
   }
-  EXPECT_EQ(calls.names.size(), count) << "more calls than are noted";
+  EXPECT_EQ(noted, count) << "more calls than are noted";
   return calls;
 }
 

@@ -6,8 +6,7 @@
 #include <csignal>
 #include <thread>
 
-#include "tests/apps/preloaded.h"
-#include "tests/apps/sampling.h"
+#include "tests/apps/run_fixture.h"
 
 namespace vantage::run_disk_test {
 
@@ -57,8 +56,6 @@ class RunDisk : public RunTest {
   }
 };
 
-using SlowRunDisk = RunDisk;
-
 TEST_F(RunDisk, FullInTheMiddle) {
   const SmallDisk disk(folder_ / "disk");
   if (!disk.is_mounted()) {
@@ -86,58 +83,6 @@ TEST_F(RunDisk, FullInTheMiddle) {
   disk.resize(1 << 20);
   succeeds(run(out, {"--quiet", "--resume"}));
   EXPECT_TRUE(same_files(results_in(out), expected));
-}
-
-TEST_F(SlowRunDisk, FullWhileVideosAreWrittenOrJoined) {
-  SCOPED_TRACE(test::sample_name());
-  const SmallDisk disk(folder_ / "disk");
-  if (!disk.is_mounted()) {
-    GTEST_SKIP() << "a small file system can be mounted by root only";
-  }
-  const FolderContent expected = undisturbed(kVideoOutputs);
-  std::uintmax_t bytes = 0;
-  for (const auto& [name, content] : expected) {
-    bytes += (content.size() + 4095) / 4096 * 4096;
-  }
-  const std::string out = folder_ / "disk/out";
-  for (const double share : sampled<double>({0.2, 0.5, 0.8, 1.0, 1.05, 1.1}, 1, 5)) {
-    disk.resize(static_cast<std::uintmax_t>(share * static_cast<double>(bytes)));
-    const ProcessResult result = run(out, joined(kVideoOutputs, {"--quiet"}));
-    expect_full(result, out, expected);
-    disk.resize(4 << 20);
-    succeeds(run(out, joined(kVideoOutputs, {"--resume"})));
-    EXPECT_TRUE(same_files(results_in(out), expected)) << share;
-    EXPECT_THAT(leftovers_in(out), IsEmpty());
-    fs::remove_all(out);
-  }
-}
-
-/// Without a file system of its own: writing fails from some call on, whichever it is.
-TEST_F(SlowRunDisk, FullFromAnyCallOn) {
-  SCOPED_TRACE(test::sample_name());
-  const std::string out = folder_ / "out";
-  const FileCalls calls = calls_of(arguments(out, kVideoOutputs), out);
-  const FolderContent expected = results_in(out);
-  const int last = calls.count();
-  ASSERT_GT(last, 100);
-  // Videos are joined near the end.
-  for (const int call :
-       sampled_range(1, last, 2, 11, {calls.numbers_of("rename").front(), last - 30, last - 12})) {
-    SCOPED_TRACE("full from call " + std::to_string(call));
-    fs::remove_all(out);
-    const ProcessResult result =
-        run_vantage(arguments(out, joined(kVideoOutputs, {"--resume", "--quiet"})),
-                    fault_at("FULL", call, out));
-    if (result.exit_code == 0) {
-      // What is left at the end needs no space.
-      EXPECT_GT(call, last * 2 / 3);
-      EXPECT_TRUE(same_files(results_in(out), expected));
-      continue;
-    }
-    expect_full(result, out, expected);
-    succeeds(run(out, joined(kVideoOutputs, {"--resume"})));
-    EXPECT_TRUE(same_files(results_in(out), expected));
-  }
 }
 
 TEST_F(RunDisk, AReadOnlyFolderIsOneLine) {

@@ -164,7 +164,7 @@ TEST_F(ResumedByFolder, VerificationFindsDamageAndResumingRepairsIt) {
 }
 
 TEST_F(ResumedByFolder, DamagedSegmentsAreMadeAgainInsteadOfJoined) {
-  const Words outputs = words("--save preview --video preview --chunk-frames 8");
+  const Words outputs = words("--save disparity,preview --video preview --chunk-frames 8");
   const FolderContent expected = undisturbed(outputs);
   for (const std::string shard : {"1/2", "2/2"}) {
     succeeds(run(out_, joined(outputs, {"--shard", shard})));
@@ -172,6 +172,12 @@ TEST_F(ResumedByFolder, DamagedSegmentsAreMadeAgainInsteadOfJoined) {
   damage(".vantage/segments/preview/000000-000007.mp4");
   expect_failure(run_vantage({"merge", out_}), 1, "8 of 20 frames are missing (0-7)");
   EXPECT_FALSE(fs::exists(out_ + "/preview.mp4"));
+  succeeds(run_vantage({"run", "-o", out_, "--resume", "--shard", "1/2"}));
+  damage("disparity/000013.pfm");
+  expect_one_line(run_vantage({"merge", out_}), 1, "merge",
+                  "disparity/000013.pfm is not as it was written");
+  EXPECT_FALSE(fs::exists(out_ + "/preview.mp4"));
+  EXPECT_EQ(verify({"--remove"}).exit_code, 1);
   succeeds(run_vantage({"run", "-o", out_, "--resume", "--frames", "all"}));
   succeeds(run_vantage({"merge", out_}));
   EXPECT_TRUE(same_files(results_in(out_), expected));
@@ -189,6 +195,11 @@ TEST_F(ResumedByFolder, VerificationReadsNeitherPipesNorDevices) {
   EXPECT_EQ(damaged.out,
             "disparity/000002.pfm is not a regular file\n"
             "disparity/000017.pfm is not a regular file\n");
+  for (const std::string name : {"frames-x.jsonl", "run.json"}) {
+    fs::remove(out_ + "/.vantage/" + name);
+    ASSERT_EQ(::mkfifo((out_ + "/.vantage/" + name).c_str(), 0600), 0);
+    expect_one_line(verify({"--quiet"}), 1, "verify", name + ": it is not a regular file");
+  }
 }
 
 TEST_F(ResumedByFolder, LinesOfTheJournalThatWereChangedAreNotBelieved) {

@@ -6,6 +6,10 @@
 //                     it, with which a program that has a reserve tries again; of those
 //   ALLOCATION_BYTES  of at least so many bytes
 //   ALLOCATION_MOST   and of at most so many; 0: of any number
+// What the system's loader and the libraries that it opens allocate meanwhile does not fail: it
+// ends the process.
+
+#include <dlfcn.h>
 
 #include <algorithm>
 #include <array>
@@ -25,6 +29,10 @@ constexpr std::size_t kSizes = 48;
 std::array<std::atomic<long>, kSizes> counts{};
 std::atomic<long> large{0};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
+/// Libraries that this thread is opening.
+// NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
+[[gnu::tls_model("initial-exec")]] thread_local int openings = 0;
+
 std::size_t number_in(const char* variable) {
   const char* text = std::getenv(variable);
   return text == nullptr ? 0 : std::strtoul(text, nullptr, 10);
@@ -36,7 +44,7 @@ bool fails(std::size_t bytes) {
   static const std::size_t failing = number_in("ALLOCATION_FAIL");
   static const std::size_t least = number_in("ALLOCATION_BYTES");
   static const std::size_t most = number_in("ALLOCATION_MOST");
-  if (failing == 0 || bytes < least || (most > 0 && bytes > most)) {
+  if (failing == 0 || openings > 0 || bytes < least || (most > 0 && bytes > most)) {
     return false;
   }
   const auto number = static_cast<std::size_t>(++large);
@@ -71,6 +79,15 @@ void* __libc_malloc(std::size_t bytes);
 void* __libc_calloc(std::size_t members, std::size_t bytes);
 void* __libc_realloc(void* block, std::size_t bytes);
 void* __libc_memalign(std::size_t alignment, std::size_t bytes);
+
+void* dlopen(const char* file, int flags) noexcept {
+  static auto* const open =
+      reinterpret_cast<void* (*)(const char*, int)>(::dlsym(RTLD_NEXT, "dlopen"));
+  ++openings;
+  void* const library = open(file, flags);
+  --openings;
+  return library;
+}
 
 void* malloc(std::size_t bytes) { return fails(bytes) ? nullptr : __libc_malloc(bytes); }
 

@@ -28,8 +28,8 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
 /// Writes the existing file `target`; messages name `path`.
 void fill(const fs::path& target, std::span<const std::uint8_t> bytes, const fs::path& path) {
   // Created again if another process has removed it.
-  const FileDescriptor file(::open(target.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
-  if (!file.valid() || !write_all(file.get(), bytes)) {
+  FileDescriptor file(::open(target.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
+  if (!file.valid() || !write_all(file.get(), bytes) || !file.close()) {
     fail_to_write(path, errno);
   }
 }

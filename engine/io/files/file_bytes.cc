@@ -36,7 +36,7 @@ void set_max_image_pixels(long long pixels) {
   accepted_pixels = pixels;
 }
 
-std::vector<std::uint8_t> read_file_bytes(const fs::path& path) {
+std::vector<std::uint8_t> read_file_bytes(const fs::path& path, bool may_be_empty) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path) {
   if (error) {
     fail_to_read(path, error.message());
   }
-  if (size == 0) {
+  if (size == 0 && !may_be_empty) {
     fail_to_read(path, "the file is empty");
   }
   // Size of the largest image: float RGBA. Larger files are not images.
@@ -78,8 +78,8 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path) {
   return bytes;
 }
 
-std::string read_file_text(const fs::path& path) {
-  const std::vector<std::uint8_t> bytes = read_file_bytes(path);
+std::string read_file_text(const fs::path& path, bool may_be_empty) {
+  const std::vector<std::uint8_t> bytes = read_file_bytes(path, may_be_empty);
   return {bytes.begin(), bytes.end()};
 }
 

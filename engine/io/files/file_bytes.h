@@ -24,10 +24,12 @@ inline constexpr long long kMaxImagePixels = 1LL << 28;
 long long max_image_pixels();
 void set_max_image_pixels(long long pixels);
 
-/// Content of a regular file. Throws Error when it is missing, unreadable, empty or not a file.
-std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path);
+/// Content of a regular file. Throws Error when it is missing, unreadable, not a file, or empty but
+/// must not be.
+std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path,
+                                          bool may_be_empty = false);
 /// Content of a regular file as text. Throws as read_file_bytes() does.
-std::string read_file_text(const std::filesystem::path& path);
+std::string read_file_text(const std::filesystem::path& path, bool may_be_empty = false);
 
 /// The bytes of a file with bounds-checked access and errors that name the file. Does not own them.
 class FileBytes {

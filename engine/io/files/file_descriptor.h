@@ -23,6 +23,9 @@ class FileDescriptor {
       ::close(descriptor_);
     }
   }
+  /// False on failure, with errno set: some file systems write only now, and what they then could
+  /// not write no later flush tells.
+  [[nodiscard]] bool close() { return ::close(std::exchange(descriptor_, -1)) == 0; }
   [[nodiscard]] int get() const { return descriptor_; }
   [[nodiscard]] bool valid() const { return descriptor_ >= 0; }
 

@@ -84,6 +84,11 @@ void NpyVolumeFile::write_part(int x, int y, int columns, const float* values) c
   }
 }
 
-void NpyVolumeFile::commit() { target_.commit(); }
+void NpyVolumeFile::commit() {
+  if (!file_.close()) {
+    fail_to_write(path_, errno);
+  }
+  target_.commit();
+}
 
 }  // namespace vantage

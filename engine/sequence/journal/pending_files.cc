@@ -33,12 +33,15 @@ void PendingFiles::add(const fs::path& path, std::span<const std::uint8_t> bytes
   // A name unique to this process: a requeued job may start while the previous one is still ending.
   const fs::path hidden = path.parent_path() / temporary_name(path, 0);
   files_.push_back({.hidden = hidden, .path = path});
-  const FileDescriptor file(::open(hidden.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  FileDescriptor file(::open(hidden.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (!file.valid() || !write_all(file.get(), bytes)) {
     fail(path, errno);
   }
   // Starts writing early, so that flushing takes less time. If this fails, flushing does it all.
   (void)::sync_file_range(file.get(), 0, 0, SYNC_FILE_RANGE_WRITE);
+  if (!file.close()) {
+    fail(path, errno);
+  }
 }
 
 void PendingFiles::flush(std::size_t index) noexcept {

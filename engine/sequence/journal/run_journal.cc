@@ -10,13 +10,12 @@
 #include <cerrno>
 #include <cstdint>
 #include <deque>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/io/files/file_descriptor.h"
 #include "engine/sequence/journal/journal_json.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -112,15 +111,7 @@ void require_description(const fs::path& folder) {
 /// The complete lines of a file, and their size in bytes. Throws Error: unreadable lines must not
 /// be taken for missing ones.
 std::pair<std::vector<std::string>, std::uintmax_t> whole_lines(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string text;
-  for (std::vector<char> block(std::size_t{1} << 16); stream;) {
-    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (!stream.is_open() || stream.bad()) {
-    throw Error(fmt::format("cannot read {}: {}", path.string(), system_message(errno)));
-  }
+  const std::string text = read_file_text(path, true);
   std::vector<std::string> lines;
   std::size_t begin = 0;
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', begin)) {
@@ -242,12 +233,11 @@ bool RunJournal::is_present(const fs::path& journal_folder) {
 
 RunIdentity RunJournal::read_identity(const fs::path& journal_folder) {
   const fs::path path = journal_folder / kIdentityFile;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) {
+  if (!is_present(journal_folder)) {
     throw Error(fmt::format("{} holds no run: {} is missing", journal_folder.parent_path().string(),
                             path.string()));
   }
-  return identity_of(std::string(std::istreambuf_iterator<char>(stream), {}), path);
+  return identity_of(read_file_text(path, true), path);
 }
 
 std::vector<std::string> RunJournal::parts(const fs::path& journal_folder) {
