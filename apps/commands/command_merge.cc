@@ -38,7 +38,8 @@ void add_merge_settings(Settings& settings, MergeJob& job) {
                 "Join the existing frames, if there are no gaps between them");
   settings.flag("no-sound", job.no_sound, "Do not copy the sound of the input");
   settings.flag("verify", job.verify,
-                "Read all results first, and stop if a file has changed since it was written");
+                "Check joined videos and reports as well before anything is written, not only what "
+                "is joined");
   settings.path("report", job.report, "FILE", "Write a JSON report");
   settings.flag("quiet", job.quiet, "Print errors only");
   settings.set_short_help({}, {"vantage merge results", "vantage merge results --partial",
@@ -100,6 +101,12 @@ int command_merge(const Arguments& arguments) {
     }
   } else if (!missing.empty()) {
     fail_incomplete(job.folder, layout, all, missing);
+  }
+  const ProgressStyle progress = job.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto;
+  if (!report.timed_file_access("check", [&] {
+        return require_unchanged_frames(layout, delivered, frames, settings.command(), progress);
+      })) {
+    return kExitInterrupted;
   }
   std::string sound_problem;
   {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "apps/process/interrupt.h"
+#include "engine/error.h"
+#include "engine/io/files/checksum.h"
 
 namespace vantage::apps {
 
@@ -11,6 +13,31 @@ RunVerification verify_with_progress(const SequenceLayout& layout, const std::st
   Progress progress(command, "files", style);
   return verify_run(
       layout, [&](int done, int total) { progress.update(done, total, 0); }, &interrupt_flag());
+}
+
+bool require_unchanged_frames(const SequenceLayout& layout, const DeliveredFrames& delivered,
+                              FrameRange frames, const std::string& command, ProgressStyle style) {
+  Progress progress(command, "frames", style);
+  int done = 0;
+  for (const auto& [frame, record] : delivered.records()) {
+    if (interrupt_flag()) {
+      return false;
+    }
+    if (!frames.contains(frame)) {
+      continue;
+    }
+    for (const FileRecord& file : record.files) {
+      if (file_content(layout.folder() / file.name) != file.content) {
+        const std::string folder = layout.folder().string();
+        throw Error(fmt::format(
+            "{}: {} is not as it was written; 'vantage verify {} --remove' and 'vantage run -o {} "
+            "--resume' write it again",
+            folder, file.name, folder, folder));
+      }
+    }
+    progress.update(++done, frames.count(), 0);
+  }
+  return true;
 }
 
 SettingValue to_value(const RunVerification& verification) {
