@@ -19,6 +19,8 @@
 #include "engine/error.h"
 #include "engine/figures/figure_table.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/existing_files.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "engine/simd.h"
 #include "scheduler/machine.h"
@@ -63,6 +65,17 @@ SettingValue describe_figure(const MadeFigure& made, const std::vector<std::stri
           {"files", files}};
 }
 
+/// Figures may join those of another time, whose page tells that they are ours.
+void require_own_folder(const std::filesystem::path& folder) {
+  const std::filesystem::path page = folder / kPageName;
+  if (!std::filesystem::exists(page)) {
+    require_no_existing_file(folder,
+                             [](const std::string& name) { return name.starts_with("figure-"); });
+  } else if (read_file_text(page, true).find("content=\"Vantage ") == std::string::npos) {
+    refuse_to_replace(page);
+  }
+}
+
 void check(const FigureJob& job, const std::vector<const BookFigure*>& figures,
            const Settings& settings) {
   if (job.output.empty()) {
@@ -82,6 +95,9 @@ void check(const FigureJob& job, const std::vector<const BookFigure*>& figures,
   job.common.execution.validate();
   FileChecks files(settings);
   files.add_made_folder(job.output, "--output");
+  if (!job.overwrite) {
+    require_own_folder(job.output);
+  }
   check_common_files(job.common, files);
 }
 

@@ -18,6 +18,7 @@ struct FigureJob {
   FigureInputs inputs;
   CommonOptions common;
   std::string output;
+  bool overwrite = false;
 };
 
 /// Lists the figures, or computes those that are named and writes their files and the page. Returns

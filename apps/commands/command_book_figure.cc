@@ -58,6 +58,7 @@ void add_figure_settings(Settings& settings, FigureJob& job) {
       "Output folder: figure-N.csv with the numbers, figure-N.svg, figure-N-book.csv with what the "
       "book says beside what came out, and a page with all of them, figures.html");
   output.short_name = 'o';
+  add_overwrite_setting(settings, job.overwrite);
 
   settings.start_group("Settings (auto and empty lists: as in the book)");
   settings.integer("size", job.settings.size_px, "PX",

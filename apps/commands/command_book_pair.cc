@@ -18,6 +18,7 @@ struct BookPairJob {
   BookPairOptions pair;
   CommonOptions common;
   std::string output;
+  bool overwrite = false;
 };
 
 void add_pair_settings(Settings& settings, BookPairJob& job) {
@@ -25,6 +26,7 @@ void add_pair_settings(Settings& settings, BookPairJob& job) {
   Setting& output = settings.path("output", job.output, "DIR", "Output folder");
   output.short_name = 'o';
   output.required = true;
+  add_overwrite_setting(settings, job.overwrite);
 
   settings.start_group("Pair");
   BookPairOptions& pair = job.pair;
@@ -97,6 +99,7 @@ int command_book_pair(const Arguments& arguments) {
       job.output, false,
       {"left", "right", "left-disparity", "right-disparity", "left-occluded", "right-occluded"},
       checks);
+  checks.require_nothing_made_unless(job.overwrite);
   check_common_files(job.common, checks);
   CommandWork work(settings, job.common);
   RunReport& report = work.report;

@@ -12,6 +12,7 @@ void add_scene_settings(Settings& settings, SceneJob& job) {
   Setting& output = settings.path("output", job.output, "DIR", "Output folder");
   output.short_name = 'o';
   output.required = true;
+  add_overwrite_setting(settings, job.overwrite);
   settings.integer("frames", job.frames, "N",
                    "Number of frames of a sequence (DIR/left/000000.png ...); single: one pair "
                    "(DIR/left.png ...)",

@@ -48,6 +48,7 @@ void add_rectify_settings(Settings& settings, RectifyJob& job) {
           "Folder for the rectified images, which keep the names of the photographs: DIR/NAME.png; "
           "for several pairs, or equal names, DIR/left/NAME.png and DIR/right/NAME.png")
       .short_name = 'o';
+  add_overwrite_setting(settings, job.overwrite);
   settings.path(
       "matrices", job.matrices, "FILE",
       "Write cameras, rectifying rotations, homographies and the valid region in OpenCV's format: "

@@ -23,6 +23,7 @@ void add_file_settings(Settings& settings, SceneBuildJob& job) {
                                   "Folder of the scene; existing results are kept");
   output.short_name = 'o';
   output.required = true;
+  add_overwrite_setting(settings, job.overwrite);
   Setting& copy =
       settings.add("copy-images", "", "Copy the images into the folder, so that it can be moved");
   copy.flag = true;

@@ -57,6 +57,7 @@ void add_scene_poses_settings(Settings& settings, ScenePosesJob& job) {
       settings.path("output", job.output, "MODEL", "Folder of the poses, a COLMAP model as text");
   output.short_name = 'o';
   output.required = true;
+  add_overwrite_setting(settings, job.overwrite);
   settings.start_group("Estimation");
   add_known_distance(settings, job.distance);
   settings.integer("partners", job.estimation.partners, "N",

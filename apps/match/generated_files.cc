@@ -7,6 +7,8 @@
 
 #include "apps/process/outputs.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/existing_files.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -54,8 +56,13 @@ void GeneratedFiles::write(const std::string& name, int frame, const Mask& mask)
   write_mask(file(name, frame, "png"), mask.view());
 }
 
-void GeneratedFiles::write_text(const std::string& name, const std::string& text) const {
-  write_text_file(folder_ / name, text);
+void GeneratedFiles::write_text(const std::string& name, const std::string& text,
+                                bool overwrite) const {
+  const std::filesystem::path file = folder_ / name;
+  if (!overwrite && std::filesystem::exists(file) && read_file_text(file, true) != text) {
+    refuse_to_replace(file);
+  }
+  write_text_file(file, text);
 }
 
 }  // namespace vantage::apps

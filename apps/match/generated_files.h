@@ -27,8 +27,9 @@ class GeneratedFiles {
   void write(const std::string& name, int frame, const Photograph& photograph) const;
   void write(const std::string& name, int frame, const DisparityMap& disparity) const;
   void write(const std::string& name, int frame, const Mask& mask) const;
-  /// Writes DIR/NAME, which belongs to all frames. Throws Error.
-  void write_text(const std::string& name, const std::string& text) const;
+  /// Writes DIR/NAME, which belongs to all frames. Throws Error, also if it is there with other
+  /// content and not to be replaced.
+  void write_text(const std::string& name, const std::string& text, bool overwrite) const;
 
  private:
   [[nodiscard]] std::filesystem::path file(const std::string& name, int frame,

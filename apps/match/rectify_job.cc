@@ -184,6 +184,7 @@ int run_rectify(RectifyJob& job, const Settings& settings) {
   if (!job.output.empty()) {
     results.emplace(job.output, *pairs, pair);
     results->check(*pairs, files);
+    files.require_nothing_made_unless(job.overwrite);
   }
   const ImageSize size = {pair.left.width(), pair.left.height()};
   const std::vector<int> sample = sampled_pairs(

@@ -21,6 +21,7 @@ struct RectifyJob {
   RectificationOptions rectification;
   std::optional<double> baseline_m;  ///< empty: that of the calibration
   std::string output;                ///< folder
+  bool overwrite = false;
   std::string matrices;
   std::string valid_mask;
   CommonOptions common;

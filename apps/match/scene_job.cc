@@ -79,6 +79,7 @@ void check_files(const SceneJob& job, const Settings& settings) {
     names.push_back(camera_name(camera));
   }
   GeneratedFiles::check(job.output, job.frames.has_value(), names, files);
+  files.require_nothing_made_unless(job.overwrite);
   files.add_made_file(std::filesystem::path(job.output) / kCalibrationFile, "--output");
   check_common_files(job.common, files);
 }
@@ -160,8 +161,8 @@ int generate_scene(SceneJob& job, const Settings& settings) {
   const LayeredScene scene(job.scene, execution);
   const GeneratedFiles files(job.output, job.frames.has_value());
 
-  report.timed_file_access("write",
-                           [&] { files.write_text(kCalibrationFile, calibration_text(scene)); });
+  report.timed_file_access(
+      "write", [&] { files.write_text(kCalibrationFile, calibration_text(scene), job.overwrite); });
   const std::atomic<bool>& interrupted = interrupt_flag();
   const int frames = job.frames.value_or(1);
   int frames_done = 0;

@@ -16,6 +16,7 @@ struct SceneJob {
   LayeredSceneOptions scene;
   CommonOptions common;
   std::string output;
+  bool overwrite = false;
   std::optional<int> frames;
   double camera_speed = 0;  ///< baselines per frame
   std::vector<BaselinePosition> views;

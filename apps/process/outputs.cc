@@ -10,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/existing_files.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/numbered_part.h"
 #include "engine/io/maps/map_formats.h"
@@ -167,11 +168,31 @@ void FileChecks::add_output(const std::string& path, const std::string& option, 
     throw UsageError(fmt::format("{} is '{}', expected a file name that ends in {}", option, path,
                                  fmt::join(extensions, " ")));
   }
-  add_made_file(path, option);
+  add_named_file(path, option);
   require_writable(path);
 }
 
 void FileChecks::add_made_file(const fs::path& path, const std::string& option) {
+  add_named_file(path, option);
+  made_files_.push_back(path);
+}
+
+void FileChecks::require_nothing_made_unless(bool overwrite) const {
+  if (overwrite) {
+    return;
+  }
+  for (const fs::path& file : made_files_) {
+    std::error_code ignored;
+    if (fs::exists(file, ignored)) {
+      refuse_to_replace(file);
+    }
+  }
+  for (const auto& [id, folder] : made_folders_) {
+    require_no_existing_file(folder.path, [](const std::string&) { return true; });
+  }
+}
+
+void FileChecks::add_named_file(const fs::path& path, const std::string& option) {
   const fs::path place = resolved(path);
   FileId id;
   const bool is_there = find_id(path, id);

@@ -48,6 +48,9 @@ class FileChecks {
   void add_made_file(const std::filesystem::path& path, const std::string& option);
   /// A folder in which the command makes files of many names. No input may lie in it.
   void add_made_folder(const std::filesystem::path& path, const std::string& option);
+  /// Throws Error if a made file is there, or any file in a made folder: the user has named
+  /// neither.
+  void require_nothing_made_unless(bool overwrite) const;
 
  private:
   /// What a file is, whatever it is called.
@@ -61,6 +64,7 @@ class FileChecks {
     std::filesystem::path path;
   };
   static bool find_id(const std::filesystem::path& path, FileId& id);
+  void add_named_file(const std::filesystem::path& path, const std::string& option);
   [[noreturn]] static void refuse_in_folder(const Output& output, const Output& folder);
   /// The folders that hold a name, and what is behind it if it is a link.
   static std::vector<std::filesystem::path> folders_of(const std::filesystem::path& path);
@@ -71,6 +75,7 @@ class FileChecks {
   std::map<std::filesystem::path, Output> outputs_;                       ///< by resolved path
   std::map<FileId, Output> output_ids_;                                   ///< those that are there
   std::map<FileId, Output> made_folders_;                                 ///< those that are there
+  std::vector<std::filesystem::path> made_files_;
 };
 
 /// `path`, absolute and without links: equal for equal places, whether or not they exist.

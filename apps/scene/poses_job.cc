@@ -64,6 +64,7 @@ void check_files(const ScenePosesJob& job, const Settings& settings,
   for (const char* const name : kModelFiles) {
     checks.add_made_file(fs::path(job.output) / name, "--output");
   }
+  checks.require_nothing_made_unless(job.overwrite);
   check_common_files(job.common, checks);
 }
 

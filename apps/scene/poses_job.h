@@ -23,6 +23,7 @@ struct ScenePosesJob {
   std::string intrinsics;
   std::optional<LensKind> lens;  ///< of the file of intrinsics
   std::string output;
+  bool overwrite = false;
   std::optional<KnownDistance> distance;
   CameraEstimationOptions estimation;
   PhotographReading reading;

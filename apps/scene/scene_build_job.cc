@@ -16,6 +16,7 @@
 #include "apps/reports/run_report.h"
 #include "apps/scene/scene_rectification.h"
 #include "engine/error.h"
+#include "engine/io/files/existing_files.h"
 #include "engine/options/match_settings.h"
 #include "engine/scene_graph/scene_builder.h"
 
@@ -44,6 +45,9 @@ void check_files(const SceneBuildJob& job, const Settings& settings,
     files.add_input(image.file);
   }
   const std::filesystem::path folder = job.output;
+  if (!job.overwrite && !std::filesystem::exists(folder / "scene.json")) {
+    require_no_existing_file(folder / "maps", [](const std::string&) { return true; });
+  }
   files.add_made_file(folder / "scene.json", "--output");
   files.add_made_folder(folder / "maps", "--output");
   check_common_files(job.common, files);

@@ -20,6 +20,7 @@ struct SceneBuildJob {
   MatchOptions match = options_with_found_range();
   CommonOptions common;
   std::string output;
+  bool overwrite = false;
   bool copy_images = false;
   bool check_rectification = true;
   RowMode rows = RowMode::kAuto;

@@ -35,4 +35,8 @@ void add_seed_setting(Settings& settings, std::uint64_t& seed) {
   setting.get = [&seed] { return seed; };
 }
 
+void add_overwrite_setting(Settings& settings, bool& overwrite) {
+  settings.flag("overwrite", overwrite, "Replace files that are in the output folder");
+}
+
 }  // namespace vantage::apps

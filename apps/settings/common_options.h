@@ -24,6 +24,9 @@ void add_common_settings(Settings& settings, CommonOptions& options,
                          Work work = Work::kWithMatching);
 /// The files of --report and --trace.
 void check_common_files(const CommonOptions& options, FileChecks& files);
+/// --overwrite of commands that make files of their own names in a folder, which else have to be
+/// absent: FileChecks::require_nothing_made_unless().
+void add_overwrite_setting(Settings& settings, bool& overwrite);
 /// A whole number of at least 0. Throws UsageError.
 std::uint64_t to_seed(const SettingValue& value);
 /// --seed.

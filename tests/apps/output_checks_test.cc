@@ -170,4 +170,46 @@ TEST_F(OutputChecks, NothingOfASceneIsReplaced) {
                  "--output would write into");
 }
 
+/// Folders are named for what a command makes in them: what is there by chance is not replaced.
+TEST_F(OutputChecks, FilesInFoldersAreNotReplacedUnasked) {
+  struct Folder {
+    Words command;
+    Words made;  ///< each is refused when it is there
+  };
+  const std::string out = at("out");
+  const Words small = words("--width 32 --height 24 --quiet");
+  const std::vector<Folder> folders = {
+      {joined({"generate", "scene", "-o", out}, small),
+       {"left.png", "right-occluded.png", "calib.txt"}},
+      {joined({"generate", "scene", "-o", out, "--frames", "2"}, small),
+       {"left/000001.png", "right-disparity/000000.pfm"}},
+      {joined({"book", "pair", "-o", out}, small), {"left-disparity.pfm"}},
+      {words("book figure 3.4 --size 32 --quiet -o " + out), {"figures.html", "figure-3.4.svg"}},
+      {words("rectify --calibration " + at("calib.txt") + " --quiet -o " + out + " " + left_ + " " +
+             right_),
+       {"left/000003.png"}},
+      {words("scene build --disparities=0:5 --quiet --positions " + at("places.csv") + " -o " +
+             out),
+       {"maps/000-001-first.pfm"}},
+  };
+  for (const Folder& folder : folders) {
+    SCOPED_TRACE(folder.command[0] + " " + folder.command[1]);
+    for (const std::string& name : folder.made) {
+      fs::create_directories((out + "/" + name).substr(0, (out + "/" + name).rfind('/')));
+      write_file(out + "/" + name, "mine");
+      const ProcessResult refused = run_vantage(folder.command);
+      EXPECT_EQ(refused.exit_code, 1);
+      EXPECT_THAT(refused.err, HasSubstr(name + " is there, expected a folder without such files; "
+                                                "--overwrite replaces them"));
+      EXPECT_EQ(files_below(out), Words{name});
+      EXPECT_EQ(read_file(out + "/" + name), "mine");
+      succeeds(run_vantage(joined(folder.command, {"--overwrite"})));
+      fs::remove_all(out);
+    }
+  }
+  // Figures join those of another time.
+  succeeds(run_vantage(folders[3].command));
+  succeeds(run_vantage(folders[3].command));
+}
+
 }  // namespace vantage::output_checks_test

@@ -247,7 +247,7 @@ TEST_F(RunFolder, FilesThatNoRunMadeAreNotReplacedUnasked) {
   for (const Words& options :
        {Words{"--quiet"}, Words{"--quiet", "--resume"}, Words{"--quiet", "--force"}}) {
     expect_one_line(run(out_, options), 1, "run",
-                    "disparity/000003.pfm is there, and no run made it");
+                    "disparity/000003.pfm is there, expected a folder without such files");
     EXPECT_EQ(read_file(out_ + "/disparity/000003.pfm"), "mine");
   }
   succeeds(run(out_, {"--overwrite"}));

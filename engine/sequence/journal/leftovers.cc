@@ -1,14 +1,12 @@
 #include "engine/sequence/journal/leftovers.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <filesystem>
 #include <limits>
 #include <string>
-#include <system_error>
+#include <vector>
 
-#include "engine/error.h"
+#include "engine/io/files/existing_files.h"
 #include "engine/io/files/temporary_name.h"
 #include "engine/sequence/journal/run_journal.h"
 
@@ -40,27 +38,27 @@ void remove_leftovers(const SequenceLayout& layout, FrameRange frames) {
 }
 
 void require_no_foreign_files(const SequenceLayout& layout) {
-  std::error_code ignored;
+  std::vector<std::filesystem::path> found;
+  const auto look_for = [&](const std::filesystem::path& file) {
+    found.push_back(existing_file(
+        file.parent_path(), [&](const std::string& name) { return name == file.filename(); }));
+  };
   for (const OutputStream& stream : layout.streams()) {
-    std::filesystem::path found;
-    if (stream.as_video && std::filesystem::exists(layout.video(stream), ignored)) {
-      found = layout.video(stream);
-    } else if (!stream.as_video) {
-      for (const auto& entry :
-           std::filesystem::directory_iterator(layout.folder() / stream.name, ignored)) {
-        if (entry.is_regular_file(ignored) &&
-            is_of_frames(entry.path().filename().string(), kAll)) {
-          found = entry.path();
-          break;
-        }
-      }
+    if (stream.as_video) {
+      look_for(layout.video(stream));
+    } else {
+      found.push_back(existing_file(layout.folder() / stream.name, [](const std::string& name) {
+        return is_of_frames(name, kAll);
+      }));
     }
+  }
+  for (const std::string& name : layout.report_names()) {
+    look_for(layout.folder() / name);
+  }
+  for (const std::filesystem::path& file : found) {
     // In this order: another part of the same run may have begun.
-    if (!found.empty() && RunJournal::parts(layout.journal_folder()).empty()) {
-      throw Error(fmt::format(
-          "{} is there, and no run made it; expected a folder without such files, `overwrite` "
-          "replaces them",
-          found.string()));
+    if (!file.empty() && RunJournal::parts(layout.journal_folder()).empty()) {
+      refuse_to_replace(file);
     }
   }
 }
