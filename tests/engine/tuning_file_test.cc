@@ -165,7 +165,8 @@ TEST_F(TuningFileTest, ReportsWhatCannotBeWritten) {
   fs::remove(path_);
   fs::create_directory(path_);
   EXPECT_THROW(store_entry(path_, entry("a")), Error);
-  EXPECT_THAT(read_tuning_file(path_).warnings, ElementsAre(HasSubstr("it is a folder, expected a file")));
+  EXPECT_THAT(read_tuning_file(path_).warnings,
+              ElementsAre(HasSubstr("it is a folder, expected a file")));
 }
 
 TEST(DefaultTuningPath, FollowsTheBaseDirectories) {
