@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -32,8 +33,8 @@ class OtherRow {
 
   /// Whether a surface at x with this disparity would hide what the other camera sees.
   [[nodiscard]] bool contradicts(int x, float px) const {
-    const float exact = std::floor(static_cast<float>(x) + columns_per_px_ * px + 0.5F);
-    if (!(exact >= 0 && exact <= static_cast<float>(last_))) {  // true for NaN
+    const float exact = static_cast<float>(x) + columns_per_px_ * px + 0.5F;
+    if (!(exact >= 0 && exact < static_cast<float>(last_ + 1))) {  // true for NaN
       return false;
     }
     const int partner = static_cast<int>(exact);
@@ -56,6 +57,22 @@ struct WeightedSample {
   float px = 0;
   std::int32_t weight = 0;
 };
+
+/// Calls visit(x) for the marks ≠ 0 of a row, most of which are 0.
+template <typename Visit>
+void for_each_marked(const std::uint8_t* marks, int width, const Visit& visit) {
+  constexpr int kWordBytes = 8;
+  for (int begin = 0; begin < width; begin += kWordBytes) {
+    const int end = std::min(begin + kWordBytes, width);
+    std::uint64_t word = 0;
+    std::memcpy(&word, marks + begin, static_cast<std::size_t>(end - begin));
+    for (int x = begin; word != 0 && x < end; ++x) {
+      if (marks[x] != 0) {
+        visit(x);
+      }
+    }
+  }
+}
 
 /// The smallest sample such that all samples up to it have at least half of the weight.
 float weighted_median(std::span<WeightedSample> samples) {
@@ -83,6 +100,7 @@ class ConsistentMedians {
       : medians_(medians),
         contradicted_(contradicted),
         map_px_(map_px),
+        weights_(kernels::filled_median_weights()),
         step_(std::max(1, static_cast<int>(kStepPx * other.columns_per_px))) {}
 
   /// NaN without any.
@@ -117,14 +135,15 @@ class ConsistentMedians {
            std::ptrdiff_t{kernels::kFilledPixelBytes} * (x + kernels::kFilledMedianMarginPx);
   }
 
-  static std::int32_t weight_of(const std::uint8_t* a, const std::uint8_t* b) {
+  [[nodiscard]] std::int32_t weight_of(const std::uint8_t* a, const std::uint8_t* b) const {
     const int difference = std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]);
-    return kernels::filled_median_weights()[static_cast<std::size_t>(difference)];
+    return weights_[static_cast<std::size_t>(difference)];
   }
 
   const FilledMediansWork& medians_;
   const Mask& contradicted_;
   const DisparityMap& map_px_;
+  const kernels::FilledMedianWeights& weights_;
   int step_;
 };
 
@@ -148,21 +167,19 @@ void mend_contradicted(const Mask& unmatched, const OtherCameraView& other,
   contradicted.resize(width, map_px.height());
   execution.for_each_row(map_px.height(), [&](int y) {
     const OtherRow row(other, y);
-    for (int x = 0; x < width; ++x) {
-      const bool is_hiding = unmatched.at(x, y) != 0 && row.contradicts(x, map_px.at(x, y));
-      contradicted.at(x, y) = is_hiding ? 255 : 0;
-    }
+    std::fill_n(contradicted.row(y), width, std::uint8_t{0});
+    for_each_marked(unmatched.row(y), width, [&](int x) {
+      contradicted.at(x, y) = row.contradicts(x, map_px.at(x, y)) ? 255 : 0;
+    });
   });
   // Contradicted pixels are written, all others are read.
   const ConsistentMedians consistent(other, medians, contradicted, map_px);
   execution.for_each_row(map_px.height(), [&](int y) {
     const OtherRow row(other, y);
-    for (int x = 0; x < width; ++x) {
-      if (contradicted.at(x, y) != 0) {
-        const float median_px = consistent.at(x, y, row);
-        map_px.at(x, y) = std::isfinite(median_px) ? median_px : map_px.at(x, y);
-      }
-    }
+    for_each_marked(contradicted.row(y), width, [&](int x) {
+      const float median_px = consistent.at(x, y, row);
+      map_px.at(x, y) = std::isfinite(median_px) ? median_px : map_px.at(x, y);
+    });
   });
 }
 
