@@ -30,6 +30,22 @@ void give_reserve_back() {
   std::free(block);  // NOLINT(cppcoreguidelines-no-malloc)
 }
 
+/// In place of the C++ library's, which prints to the stream that keep_libraries_quiet() closes.
+[[noreturn]] void end_by_uncaught_error() {
+  tell_text("vantage: ended by an error that nothing caught");
+  try {
+    if (const std::exception_ptr error = std::current_exception()) {
+      std::rethrow_exception(error);
+    }
+  } catch (const std::exception& error) {
+    tell_text(": ");
+    tell_text(error.what());
+  } catch (...) {  // has no text
+  }
+  tell_text("\n");
+  std::abort();
+}
+
 /// Some libraries print lines of their own, whatever their log level: x264, where memory ends. What
 /// a command has to say goes through tell(), which does not need the C library's stream.
 void keep_libraries_quiet() {
@@ -37,10 +53,7 @@ void keep_libraries_quiet() {
   if (std::FILE* const nowhere = std::fopen("/dev/null", "we"); nowhere != nullptr) {
     stderr = nowhere;
   }
-  std::set_terminate([] {
-    tell_text("vantage: ended by an error that nothing caught\n");
-    std::abort();
-  });
+  std::set_terminate(end_by_uncaught_error);
 #endif
 }
 
