@@ -53,7 +53,7 @@ Case random_case(int width, int height, Side side, int pixels_per_column) {
 bool contradicts(const Case& c, int x, int y, double px) {
   const int width = c.other_px.width();
   const int direction = c.other.side == Side::kLeft ? -1 : 1;
-  const double partner = std::floor(x + direction * c.other.columns_per_px * px + 0.5);
+  const double partner = std::floor(x + direction * double{c.other.columns_per_px} * px + 0.5);
   if (partner < 0 || partner >= width) {
     return false;
   }
