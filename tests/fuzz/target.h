@@ -59,7 +59,9 @@ class Values {
   T next() {
     T value{};
     const std::size_t count = std::min(sizeof(T), bytes_.size());
-    std::memcpy(&value, bytes_.data(), count);
+    if (count > 0) {  // memcpy() takes no null pointer
+      std::memcpy(&value, bytes_.data(), count);
+    }
     bytes_ = bytes_.subspan(count);
     return value;
   }
