@@ -93,7 +93,11 @@ std::string TiffFile::text(std::uint32_t tag) const {
   const bool is_found =
       field != nullptr && (has_count ? libtiff().TIFFGetField(tiff_.get(), tag, &count, &text)
                                      : libtiff().TIFFGetField(tiff_.get(), tag, &text)) != 0;
-  return is_found && text != nullptr ? text : "";
+  if (!is_found || text == nullptr) {
+    return "";
+  }
+  // libtiff ends texts by a zero, but a damaged file may hold other values under the tag.
+  return has_count ? std::string(text, ::strnlen(text, count)) : text;
 }
 
 std::optional<double> TiffFile::white_level() const {
