@@ -18,7 +18,7 @@ Mask white_pixels(const Photograph& photograph, const std::string& path);
 
 /// New views beside photographs of the same places.
 struct ViewComparison {
-  /// Of all frames together. SSIM: the mean over frames, each weighted by its number of pixels.
+  /// PSNR over the pixels of all frames; SSIM averaged over frames, weighted by their pixels.
   ViewScores scores;
   double immersive_psnr_db = 0;  ///< likewise
   ViewFlicker flicker;

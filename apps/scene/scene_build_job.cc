@@ -74,7 +74,7 @@ SettingValue describe_edge(const BuiltEdge& built, SettingValue rectification) {
   return values;
 }
 
-/// Of the images that were corrected, each beside its left neighbour.
+/// For the report: each corrected image, with its rows relative to its left neighbour.
 SettingValue describe_rows(const std::vector<CorrectedImage>& images) {
   SettingValue described = SettingValue::array();
   for (const CorrectedImage& image : images) {

@@ -29,7 +29,7 @@ void add_method_settings(Settings& settings, MatchOptions& options) {
   Setting& preset = settings.choice(
       "preset", options.preset, names_of(MatchPreset{}),
       "Parameters for photographs, shown by --print-config:\nrealtime  0.35 times the time of "
-      "balanced, 8.1 % bad pixels\nbalanced  the default, 7.5 % bad pixels (mean of 18 "
+      "balanced, 8.2 % bad pixels\nbalanced  the default, 7.5 % bad pixels (mean of 18 "
       "scenes)\nquality   1.8 times the time of balanced, 7.4 % bad pixels\nauto: balanced; with "
       "--method, --aggregate, --disparities-y: none");
   preset.set = [set = std::move(preset.set)](const SettingValue& value) {

@@ -15,7 +15,7 @@ void interpolate(int begin, int end, float* disparity_px) {
   }
 }
 
-/// Of the run [begin, end): whether it lies between two pixels of one surface.
+/// Whether the run [begin, end) lies between two pixels of one surface.
 bool is_one_surface(int begin, int end, int width, const SurfaceStep& step,
                     const float* disparity_px) {
   return begin > 0 && end < width &&

@@ -61,7 +61,7 @@ PresetSettings preset_settings(MatchPreset preset, NoiseKind kind) {
       settings.refinement.cross_check_px = 1.5;
       settings.refinement.speckle_size_px = 90;
       settings.refinement.surface_fit_px = 14;
-      settings.refinement.fill = Fill::kFarther;
+      settings.refinement.fill = Fill::kMedian;
       break;
     case MatchPreset::kBalanced:
       settings.parameters.census_thresholds = 3;
