@@ -46,6 +46,7 @@ int thread_count(const ExecutionOptions& options, const scheduler::Machine& mach
 }
 
 Execution::Execution(const ExecutionOptions& options) : options_(options) {
+  options_.executor = scheduler::built_in_executor(options_.executor);
   options_.validate();
   const scheduler::Topology topology = scheduler::detect_topology();
   machine_ = topology.machine;

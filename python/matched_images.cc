@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "engine/image/black_border.h"
+#include "engine/io/images/black_border.h"
 #include "engine/io/images/scene_mask.h"
 
 namespace vantage::python {

@@ -39,6 +39,14 @@ std::vector<int> all_hardware_threads(const NumaNode& node) {
 
 }  // namespace
 
+int NumaNode::hardware_threads() const {
+  std::size_t count = 0;
+  for (const Core& core : cores) {
+    count += core.size();
+  }
+  return static_cast<int>(count);
+}
+
 int ThreadPlaces::thread_count() const {
   int count = 0;
   for (const NodeThreads& node : nodes) {

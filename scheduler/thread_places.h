@@ -42,8 +42,11 @@ ThreadPlaces unbound_threads(int threads);
 /// then works on memory of its own node. With kNone: unbound_threads().
 ThreadPlaces place_threads(const Topology& topology, int threads, ThreadBinding binding);
 
-/// Like make_executor() of executor.h, for given places. Throws std::invalid_argument for a serial
-/// executor with binding.
+/// `wanted`, or where the build is without it, the first of TBB, OpenMP and serial that it has.
+ExecutorKind built_in_executor(ExecutorKind wanted);
+
+/// Like make_executor() of executor.h, for given places: built_in_executor(kind). Throws
+/// std::invalid_argument for a serial executor with binding.
 std::unique_ptr<Executor> make_executor(ExecutorKind kind, const ThreadPlaces& places);
 
 /// `total` divided in proportion to `weights` (≥ 0, not all 0), each part rounded to a neighbour.

@@ -163,14 +163,6 @@ Topology read(const Handle& handle) {
 
 }  // namespace
 
-int NumaNode::hardware_threads() const {
-  std::size_t count = 0;
-  for (const Core& core : cores) {
-    count += core.size();
-  }
-  return static_cast<int>(count);
-}
-
 Topology detect_topology() {
   const Handle handle = known_topology();
   if (handle == nullptr) {

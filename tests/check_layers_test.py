@@ -70,6 +70,17 @@ class CheckLayersTest(PlantedTreeTest):
             self.assertIn("engine/a/x.cc:1: folders include each other: engine/a -> engine/b/deep",
                           result.stdout)
 
+    def test_the_core_includes_itself(self):
+        tree = {**CLEAN_TREE, "engine/late.h": "#pragma once\n", "engine/border.h": "#pragma once\n",
+                "engine/border.cc": "#include <opencv2/core.hpp>\n",
+                "engine/CMakeLists.txt": "set(core_parts\n  image error)\nset(core_borders border)\n"}
+        within = '#include <Eigen/Core>\n#include <unistd.h>\n#include "engine/border.h"\n'
+        self.assertEqual(self.check({**tree, "engine/image/a.cc": within}).returncode, 0)
+        for include in ["<opencv2/core.hpp>", "<png.h>", "<nlohmann/json.hpp>", '"engine/late.h"']:
+            for name in ["engine/image/a.cc", "engine/error.cc"]:
+                result = self.check({**tree, name: f"#include {include}\n"})
+                self.assertIn(f"{name}:1: the core ", result.stdout)
+
     def test_private_header_in_a_public_one(self):
         self.expect_violation("engine/a.h", '#pragma once\n#include "engine/io/video/libav_functions.h"\n',
                               "engine/a.h:2: ")

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -21,18 +21,17 @@ namespace {
 
 constexpr std::uint8_t kSet = 255;
 
-/// Pixels of constant images are only read.
 template <typename T>
-cv::Mat as_mat(ImageView<const T> image) {
-  return {image.height(), image.width(), CV_MAKETYPE(cv::DataType<T>::depth, image.channels()),
-          const_cast<T*>(image.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-          image.stride() * sizeof(T)};
-}
-
-template <typename T>
-void set_where(const Mask& mask, double value, Image<T>& image) {
-  if (!mask.empty() && mask.width() == image.width() && mask.height() == image.height()) {
-    as_mat<T>(image.view()).setTo(cv::Scalar::all(value), as_mat<std::uint8_t>(mask.view()));
+void set_where(const Mask& mask, T value, Image<T>& image) {
+  if (mask.empty() || mask.width() != image.width() || mask.height() != image.height()) {
+    return;
+  }
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      if (mask.at(x, y) != 0) {
+        std::fill_n(image.row(y) + x * image.channels(), image.channels(), value);
+      }
+    }
   }
 }
 
@@ -82,8 +81,10 @@ void leave_out(Photograph& photograph, Mask left_out) {
     return;
   }
   if (!photograph.left_out.empty()) {
-    cv::Mat all = as_mat<std::uint8_t>(left_out.view());
-    cv::bitwise_or(all, as_mat<std::uint8_t>(std::as_const(photograph.left_out).view()), all);
+    for (int y = 0; y < left_out.height(); ++y) {
+      std::transform(left_out.row(y), left_out.row(y) + left_out.width(),
+                     photograph.left_out.row(y), left_out.row(y), std::bit_or<std::uint8_t>());
+    }
   }
   photograph.left_out = std::move(left_out);
   std::visit([&](auto& image) { fill_image(photograph.left_out, image); }, photograph.pixels);
@@ -122,32 +123,34 @@ void leave_out_no_data(Photograph& photograph, std::optional<double> no_data) {
 }
 
 void blacken_left_out(Photograph& photograph) {
-  std::visit([&](auto& image) { set_where(photograph.left_out, 0, image); }, photograph.pixels);
+  std::visit([&]<typename T>(Image<T>& image) { set_where(photograph.left_out, T{0}, image); },
+             photograph.pixels);
 }
 
 Mask half_of(const Mask& left_out) {
   if (left_out.empty()) {
     return {};
   }
-  cv::Mat eroded;  // the least of a pixel and those right of and below it
-  cv::erode(as_mat<std::uint8_t>(left_out.view()), eroded, cv::Mat::ones(2, 2, CV_8U), {0, 0});
   Mask half((left_out.width() + 1) / 2, (left_out.height() + 1) / 2);
   for (int y = 0; y < half.height(); ++y) {
+    const std::uint8_t* const upper = left_out.row(2 * y);
+    const std::uint8_t* const lower = left_out.row(std::min(2 * y + 1, left_out.height() - 1));
     for (int x = 0; x < half.width(); ++x) {
-      half.at(x, y) = eroded.at<std::uint8_t>(2 * y, 2 * x);
+      const int right = std::min(2 * x + 1, left_out.width() - 1);
+      half.at(x, y) = std::min({upper[2 * x], upper[right], lower[2 * x], lower[right]});
     }
   }
   return half;
 }
 
 void erase_left_out(const Mask& left_out, Image<float>& values) {
-  set_where(left_out, std::numeric_limits<double>::quiet_NaN(), values);
+  set_where(left_out, std::numeric_limits<float>::quiet_NaN(), values);
 }
 
 void erase_left_out(const Mask& left_out, MatchedMap& map) {
   erase_left_out(left_out, map.disparity_px);
   erase_left_out(left_out, map.disparity_y_px);
-  set_where(left_out, 0, map.confidence);
+  set_where(left_out, 0.0F, map.confidence);
   set_where(left_out, kSet, map.unmatched);
 }
 
@@ -182,7 +185,11 @@ void mark_left_out(const Mask& own, const Mask& other, Side side, float columns_
 
 double share_of(const Mask& mask) {
   const double pixels = static_cast<double>(mask.width()) * mask.height();
-  return mask.empty() ? 0 : cv::countNonZero(as_mat<std::uint8_t>(mask.view())) / pixels;
+  std::ptrdiff_t set = 0;
+  for (int y = 0; y < mask.height(); ++y) {
+    set += mask.width() - std::count(mask.row(y), mask.row(y) + mask.width(), 0);
+  }
+  return mask.empty() ? 0 : static_cast<double>(set) / pixels;
 }
 
 }  // namespace vantage

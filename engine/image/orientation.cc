@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
-#include <opencv2/core.hpp>
+#include <cstddef>
 #include <string_view>
-#include <utility>
+#include <type_traits>
+#include <variant>
 
 #include "engine/error.h"
 #include "engine/image/photograph.h"
@@ -25,12 +27,26 @@ std::string_view name_of(Orientation orientation) {
   return kNames.at(static_cast<std::size_t>(orientation) - 1);
 }
 
-// OpenCV does not change its source, but cv::Mat has no view of constant pixels.
-template <typename T>
-cv::Mat as_matrix(ImageView<const T> image) {
-  return {image.height(), image.width(), CV_MAKETYPE(cv::DataType<T>::depth, image.channels()),
-          const_cast<T*>(image.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-          image.stride() * sizeof(T)};
+/// Copies pixels of kChannels: result(x, y) = image at row y, or column y where sides are
+/// exchanged, from the far end where `mirrors` (x) or `flips` (y).
+template <int kChannels, typename T>
+void turn_into(ImageView<const T> image, bool exchanges_sides, bool mirrors, bool flips,
+               Image<T>& result) {
+  const int block_rows = exchanges_sides ? 32 : 1;  // as pixels lie one after another
+  const auto stride = static_cast<std::ptrdiff_t>(image.stride());
+  const std::ptrdiff_t along_x = exchanges_sides ? stride : kChannels;
+  const std::ptrdiff_t along_y = exchanges_sides ? kChannels : stride;
+  const int width = result.width();
+  const int height = result.height();
+  for (int block = 0; block < height; block += block_rows) {
+    for (int x = 0; x < width; ++x) {
+      const T* const column = image.data() + along_x * (mirrors ? width - 1 - x : x);
+      for (int y = block; y < std::min(block + block_rows, height); ++y) {
+        std::copy_n(column + along_y * (flips ? height - 1 - y : y), kChannels,
+                    result.row(y) + x * kChannels);
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -55,14 +71,15 @@ Image<T> turned(ImageView<const T> image, Orientation orientation) {
   }
   Image<T> result(exchanges_sides ? image.height() : image.width(),
                   exchanges_sides ? image.width() : image.height(), image.channels());
-  cv::Mat target = as_matrix<T>(result.view());
-  cv::Mat source = as_matrix<T>(image);
-  if (exchanges_sides) {
-    cv::transpose(source, target);
-    source = target;
-  }
-  if (mirrors || flips) {
-    cv::flip(source, target, mirrors && flips ? -1 : mirrors ? 1 : 0);
+  const auto turn = [&]<int kChannels>(std::integral_constant<int, kChannels>) {
+    turn_into<kChannels>(image, exchanges_sides, mirrors, flips, result);
+  };
+  if (image.channels() == 1) {
+    turn(std::integral_constant<int, 1>());
+  } else if (image.channels() == 3) {
+    turn(std::integral_constant<int, 3>());
+  } else {
+    turn(std::integral_constant<int, 4>());
   }
   return result;
 }

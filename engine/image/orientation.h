@@ -24,7 +24,7 @@ enum class Orientation : std::uint8_t {
 /// The tag's value; kAsStored for others than 1 to 8, which mean nothing.
 Orientation orientation_of_tag(long long value);
 
-/// The upright picture. T: uint8_t, uint16_t or float. Thread rule: pure.
+/// The upright picture, of 1, 3 or 4 channels. T: uint8_t, uint16_t or float. Thread rule: pure.
 template <typename T>
 Image<T> turned(ImageView<const T> image, Orientation orientation);
 

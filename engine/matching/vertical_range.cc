@@ -12,6 +12,7 @@
 #include "engine/image/transposed.h"
 #include "engine/matching/range_estimation.h"
 #include "engine/rectification/feature_matches.h"
+#include "engine/with_opencv.h"
 
 namespace vantage {
 namespace {
@@ -64,6 +65,9 @@ DisparityRange whole_pixels(const MatchSpan& span, double margin_px) {
 
 std::optional<DisparityRange> find_vertical_range(const Photograph& left, const Photograph& right,
                                                   Execution& execution) {
+  if (!has_opencv()) {
+    throw UsageError("disparities-y is auto, expected MIN:MAX: this build is without OpenCV");
+  }
   if (left.width() != right.width() || left.height() != right.height()) {
     throw Error(fmt::format("left image is {}x{} but right image is {}x{}, expected equal sizes",
                             left.width(), left.height(), right.width(), right.height()));

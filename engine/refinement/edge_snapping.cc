@@ -4,20 +4,18 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <opencv2/core.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "engine/image/intensity_rows.h"
-#include "engine/io/images/opencv_setup.h"
+#include "engine/refinement/edge_tracing.h"
 #include "kernels/edge_snapping/edge_snapping.h"
 
 namespace vantage {
 namespace {
 
-constexpr double kLowThreshold = 6;    // grey levels per pixel
-constexpr double kHighThreshold = 10;  // grey levels per pixel
+constexpr int kLowThreshold = 6;    // grey levels per pixel
+constexpr int kHighThreshold = 10;  // grey levels per pixel
 // Units of a 16-bit gradient per grey level per pixel: 255/2 times this fits.
-constexpr float kGradientSteps = 128;
+constexpr int kGradientSteps = 128;
 
 constexpr int kRadius = 4;
 using HalfKernel = std::array<float, kRadius + 1>;
@@ -65,15 +63,9 @@ void smooth_across_rows(const Image<float>& rows, int y, const HalfKernel& kerne
 /// Half the difference of the neighbours, in gradient units.
 std::int16_t central_difference(float before, float after) {
   constexpr int kMax = std::numeric_limits<std::int16_t>::max();
-  const float steps = (after - before) * (kGradientSteps / 2);
+  const float steps = (after - before) * (kGradientSteps / 2.0F);
   const float limited = std::clamp(steps, -static_cast<float>(kMax), static_cast<float>(kMax));
   return static_cast<std::int16_t>(static_cast<int>(limited + (kMax + 0.5F)) - kMax);
-}
-
-template <typename T>
-cv::Mat wrap(Image<T>& image) {
-  return {image.height(), image.width(), cv::DataType<T>::type, image.row(0),
-          image.view().stride() * sizeof(T)};
 }
 
 }  // namespace
@@ -105,10 +97,9 @@ void find_edges(const Photograph& photograph, Execution& execution, EdgeSnapping
       gradient_y[x] = central_difference(above[x], below[x]);
     }
   });
-  prepare_opencv();
-  cv::Mat edges = wrap(work.edges);
-  cv::Canny(wrap(work.gradient_x), wrap(work.gradient_y), edges, kLowThreshold * kGradientSteps,
-            kHighThreshold * kGradientSteps, /*L2gradient=*/true);
+  trace_edges(work.gradient_x, work.gradient_y,
+              {kLowThreshold * kGradientSteps, kHighThreshold * kGradientSteps}, execution,
+              work.edges);
 }
 
 void snap_discontinuities(const Mask& edges, int max_px, Execution& execution,

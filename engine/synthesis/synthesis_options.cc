@@ -5,10 +5,14 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/with_opencv.h"
 
 namespace vantage {
 
 void SynthesisOptions::validate() const {
+  if (holes == HoleFilling::kInpaint && !has_opencv()) {
+    throw UsageError("holes is inpaint, expected another: this build is without OpenCV");
+  }
   if (gamma && !(*gamma >= 0 && *gamma <= 1)) {
     throw UsageError(fmt::format("gamma is {}, expected 0..1", *gamma));
   }

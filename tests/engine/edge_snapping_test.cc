@@ -1,6 +1,9 @@
 #include "engine/refinement/edge_snapping.h"
 
+#include <opencv2/imgproc.hpp>
+
 #include "engine/execution.h"
+#include "engine/refinement/edge_tracing.h"
 #include "tests/engine/engine_test.h"
 
 namespace vantage::edge_snapping_test {
@@ -112,6 +115,34 @@ TEST(SnapDiscontinuities, MovesThemToTheEdgesOfTheImageInEveryRow) {
       if (x < 19 || x > 20) {
         ASSERT_EQ(map.at(x, y), x < 20 ? 9.0F : 3.0F) << x << ", " << y;
       }
+    }
+  }
+}
+
+// Gradients of few values have many equal neighbours.
+TEST(TraceEdges, AreThoseOfOpenCv) {
+  for (const auto& [width, height, spread] :
+       {std::array{61, 47, 60}, {64, 33, 16000}, {1, 9, 100}, {9, 1, 100}, {2, 2, 100}}) {
+    std::mt19937 random(static_cast<unsigned>(width));
+    Image<std::int16_t> gradient_x(width, height);
+    Image<std::int16_t> gradient_y(width, height);
+    for (const auto [x, y] : positions_of(width, height)) {
+      std::uniform_int_distribution<int> value(-spread, spread);
+      gradient_x.at(x, y) = static_cast<std::int16_t>(value(random));
+      gradient_y.at(x, y) = static_cast<std::int16_t>(value(random));
+    }
+    const auto wrap = [](Image<std::int16_t>& image) {
+      return cv::Mat(image.height(), image.width(), CV_16S, image.row(0),
+                     image.view().stride() * sizeof(std::int16_t));
+    };
+    const EdgeThresholds thresholds{spread / 2, spread};
+    cv::Mat expected;
+    cv::Canny(wrap(gradient_x), wrap(gradient_y), expected, thresholds.low, thresholds.high, true);
+    Execution execution({.threads = 3});
+    Mask edges(width, height);
+    trace_edges(gradient_x, gradient_y, thresholds, execution, edges);
+    for (const auto [x, y] : positions_of(width, height)) {
+      ASSERT_EQ(edges.at(x, y), expected.at<std::uint8_t>(y, x)) << x << ", " << y;
     }
   }
 }

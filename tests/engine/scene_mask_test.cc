@@ -1,7 +1,7 @@
 #include "engine/io/images/scene_mask.h"
 
-#include "engine/image/black_border.h"
 #include "engine/image/left_out.h"
+#include "engine/io/images/black_border.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/sequence/pairs/pair_source.h"
 #include "tests/engine/engine_test.h"

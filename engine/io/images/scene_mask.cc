@@ -8,8 +8,8 @@
 #include <variant>
 
 #include "engine/error.h"
-#include "engine/image/black_border.h"
 #include "engine/image/left_out.h"
+#include "engine/io/images/black_border.h"
 #include "engine/io/images/photograph_io.h"
 
 namespace vantage {

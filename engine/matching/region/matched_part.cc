@@ -7,12 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 #include <variant>
 
 #include "engine/error.h"
 #include "engine/image/left_out.h"
+#include "engine/image/resized.h"
 #include "kernels/map_enlargement/map_enlargement.h"
 
 namespace vantage {
@@ -25,6 +25,7 @@ using scheduler::Region;
 constexpr int kContextPx = 32;
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint8_t kUnmatched = 255;
+constexpr std::uint8_t kLeftOut = 255;
 
 int reduced(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
@@ -52,28 +53,12 @@ ImageView<T> cut(ImageView<T> image, const Region& pixels) {
           pixels.columns.size(), pixels.rows.size(), image.channels(), image.stride()};
 }
 
-/// Pixels of constant images are only read.
-template <typename T>
-cv::Mat wrap(ImageView<const T> image) {
-  return {image.height(), image.width(), CV_MAKETYPE(cv::DataType<T>::depth, image.channels()),
-          const_cast<T*>(image.data()),  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-          image.stride() * sizeof(T)};
-}
-
-template <typename T>
-Image<T> resized(ImageView<const T> image, scheduler::Extent extent, int interpolation) {
-  Image<T> result(extent.columns, extent.rows, image.channels());
-  const cv::Mat target = wrap<T>(result.view());
-  cv::resize(wrap(image), target, target.size(), 0, 0, interpolation);
-  return result;
-}
-
 /// Linear within surfaces; at jumps a pixel takes the disparity of the one that covers it.
 /// Values stay in `range`, which that of reduced pixels exceeds by rounding.
 DisparityMap enlarged(const DisparityMap& map_px, scheduler::Extent extent, float px_per_px,
                       DisparityRange range) {
-  DisparityMap result = resized<float>(map_px.view(), extent, cv::INTER_NEAREST);
-  const DisparityMap linear = resized<float>(map_px.view(), extent, cv::INTER_LINEAR);
+  DisparityMap result = resized_to_nearest<float>(map_px.view(), extent.columns, extent.rows);
+  const DisparityMap linear = resized_linearly(map_px.view(), extent.columns, extent.rows);
   constexpr float kSurfacePx = 0.5F * kernels::kEnlargedSurfaceStepPx;
   for (int y = 0; y < extent.rows; ++y) {
     std::transform(result.row(y), result.row(y) + extent.columns, linear.row(y), result.row(y),
@@ -133,7 +118,8 @@ Photograph MatchedPart::of(const Photograph& photograph) const {
   const bool is_smaller = extent_ != scheduler::Extent{cut_.columns.size(), cut_.rows.size()};
   const auto part_of = [&]<typename T>(const Image<T>& image) {
     const ImageView<const T> pixels = cut(image.view(), cut_);
-    return is_smaller ? resized(pixels, extent_, cv::INTER_AREA) : Image<T>::borrowed(pixels);
+    return is_smaller ? reduced_by_area<T>(pixels, extent_.columns, extent_.rows)
+                      : Image<T>::borrowed(pixels);
   };
   Photograph result =
       std::visit([&](const auto& image) { return Photograph{part_of(image)}; }, photograph.pixels);
@@ -145,8 +131,12 @@ Photograph MatchedPart::of(const Photograph& photograph) const {
   }
   if (is_smaller && !photograph.left_out.empty()) {
     // Of an area that is left out in part, the rest still shows the scene.
-    const cv::Mat share = wrap<std::uint8_t>(result.left_out.view());
-    cv::threshold(share, share, kUnmatched - 1, kUnmatched, cv::THRESH_BINARY);
+    for (int y = 0; y < extent_.rows; ++y) {
+      std::uint8_t* const row = result.left_out.row(y);
+      std::transform(row, row + extent_.columns, row, [](std::uint8_t share) -> std::uint8_t {
+        return share == kLeftOut ? kLeftOut : 0;
+      });
+    }
   }
   return result;
 }
@@ -154,8 +144,13 @@ Photograph MatchedPart::of(const Photograph& photograph) const {
 DisparityMap MatchedPart::of_prior(ImageView<const float> map_px) const {
   DisparityMap result;
   if (!map_px.empty()) {
-    result = resized(cut(map_px, cut_), extent_, cv::INTER_NEAREST);
-    wrap<float>(result.view()) *= extent_.columns / static_cast<double>(cut_.columns.size());
+    result = resized_to_nearest<float>(cut(map_px, cut_), extent_.columns, extent_.rows);
+    const auto scale =
+        static_cast<float>(extent_.columns / static_cast<double>(cut_.columns.size()));
+    for (int y = 0; y < extent_.rows; ++y) {
+      std::transform(result.row(y), result.row(y) + extent_.columns, result.row(y),
+                     [=](float disparity_px) { return disparity_px * scale; });
+    }
   }
   return result;
 }
@@ -180,7 +175,8 @@ void MatchedPart::bring_back(const MatchedMap& map_of_part, std::size_t index,
           kNaN, whole);
   };
   const auto place_nearest = [&]<typename T>(const Image<T>& of_part, T unknown, Image<T>& whole) {
-    place(of_part.empty() ? Image<T>() : resized<T>(of_part.view(), extent, cv::INTER_NEAREST),
+    place(of_part.empty() ? Image<T>()
+                          : resized_to_nearest<T>(of_part.view(), extent.columns, extent.rows),
           unknown, whole);
   };
   place_disparities(map_of_part.disparity_px, static_cast<double>(extent.columns) / extent_.columns,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/rectification/rows/row_points.h"
+#include "engine/with_opencv.h"
 
 namespace vantage {
 namespace {
@@ -23,6 +24,9 @@ RowCheck check_rows(const Photograph& left, const Photograph& right, Execution* 
   RowCheck check{.rows = fit_rows(points, left.width(), left.height()), .error = std::nullopt};
   if (check.rows) {
     check.error = vertical_error(points);
+    return check;
+  }
+  if (!has_opencv()) {
     return check;
   }
   check.error = vertical_error(match_features(

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "engine/with_opencv.h"
+
 namespace vantage {
 namespace {
 
@@ -34,6 +36,11 @@ std::vector<Remark> row_remarks(const RowCheck& check, const RowUse& use) {
         {kWarning, "rectification",
          fmt::format("the pair is not rectified: {}; {}; {}", cost_text(*check.error, use.lines),
                      vertical_error_text(*check.error), what_to_do(check, use.lines))});
+  }
+  if (!check.rows && !has_opencv()) {
+    remarks.push_back({kNote, "rectification",
+                       "too few points tell whether rows correspond; features would, but this "
+                       "build is without OpenCV"});
   }
   if (looks_exchanged(check, use)) {
     remarks.push_back({kWarning, "order", exchanged_text(*check.error, use.lines)});

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/image/black_border.h"
+#include "engine/io/images/black_border.h"
 
 namespace vantage {
 namespace {

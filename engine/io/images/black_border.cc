@@ -1,4 +1,4 @@
-#include "engine/image/black_border.h"
+#include "engine/io/images/black_border.h"
 
 #include <algorithm>
 #include <cmath>
