@@ -17,24 +17,35 @@ SECTOR = 512
 
 
 class File:
-    def __init__(self):
-        self.bytes = b""
-        self.durable = b""
+    def __init__(self, data=b""):
+        self.durable = data
+        self.change(data)
+
+    def change(self, data):
+        self.bytes = data
+        self.left = {}  # after a cut, by kind
 
     def write(self, offset, data):
-        self.bytes = self.bytes[:offset].ljust(offset, b"\0") + data + self.bytes[offset + len(data):]
+        self.change(self.bytes[:offset].ljust(offset, b"\0") + data
+                    + self.bytes[offset + len(data):])
 
     def truncate(self, length):
-        self.bytes = self.bytes[:length].ljust(length, b"\0")
+        self.change(self.bytes[:length].ljust(length, b"\0"))
 
     def flush(self):
         self.durable = self.bytes
+        self.left = {}
 
     def after_cut(self, kind):
+        if kind not in self.left:
+            self.left[kind] = self.made_by_cut(kind)
+        return self.left[kind]
+
+    def made_by_cut(self, kind):
         new, old = self.bytes, self.durable
-        same = len(os.path.commonprefix([new, old]))
         if kind == "none" or new == old:
             return old
+        same = len(old) if new.startswith(old) else len(os.path.commonprefix([new, old]))
         if kind == "zeros":
             return new[:same] + b"\0" * (len(new) - same)
         if kind == "half":
@@ -91,9 +102,8 @@ class Disk:
             if entry.is_dir():
                 node = self.load(entry.path)
             else:
-                node = File()
                 with open(entry.path, "rb") as file:
-                    node.bytes = node.durable = file.read()
+                    node = File(file.read())
             folder.names[entry.name] = node
         folder.flush()
         return folder

@@ -1,6 +1,7 @@
 #include "engine/sequence/journal/run_journal.h"
 
 #include "engine/sequence/journal/delivered_frames.h"
+#include "engine/sequence/journal/journal_json.h"
 #include "engine/sequence/journal/run_verification.h"
 #include "tests/engine/engine_test.h"
 
@@ -133,6 +134,22 @@ TEST_F(RunJournalTest, RecordsThatNothingDescribesAreNotTakenOver) {
   }
   EXPECT_TRUE(delivered().is_done(0));
   open(JournalOpening::kOverwrite);
+  EXPECT_FALSE(delivered().is_done(0));
+}
+
+/// As when `overwrite` is cut off while it removes them.
+TEST_F(RunJournalTest, RecordsOfAReplacedRunDoNotCount) {
+  {
+    RunJournal journal = open(JournalOpening::kNew, "1-of-2");
+    deliver(journal, 0);
+  }
+  identity_.settings = R"({"format":"pfm","window":9})";
+  RunIdentity unfinished = identity_;
+  unfinished.replaces_records = true;
+  write(journal_ / "run.json", text_of(unfinished));
+  EXPECT_FALSE(delivered().is_done(0));
+  EXPECT_EQ(refusal(JournalOpening::kResume), "");
+  EXPECT_FALSE(RunJournal::read_identity(journal_).replaces_records);
   EXPECT_FALSE(delivered().is_done(0));
 }
 

@@ -240,6 +240,9 @@ std::string text_of(const RunIdentity& identity) {
   if (identity.frame_times) {
     json["frame_times"] = json_of(*identity.frame_times);
   }
+  if (identity.replaces_records) {
+    json["replaces_records"] = true;
+  }
   return with_checksum(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
@@ -270,6 +273,7 @@ RunIdentity identity_of(const std::string& text, const std::filesystem::path& fi
     if (const auto times = json.find("frame_times"); times != json.end()) {
       identity.frame_times = frame_times_in(*times);
     }
+    identity.replaces_records = json.value("replaces_records", false);
     return identity;
   } catch (const nlohmann::json::exception&) {
     throw Error(fmt::format("{}: is damaged, expected the description of a run", file.string()));

@@ -57,7 +57,7 @@ void require_no_foreign_files(const SequenceLayout& layout) {
   }
   for (const std::filesystem::path& file : found) {
     // In this order: another part of the same run may have begun.
-    if (!file.empty() && RunJournal::parts(layout.journal_folder()).empty()) {
+    if (!file.empty() && !RunJournal::is_present(layout.journal_folder())) {
       refuse_to_replace(file);
     }
   }

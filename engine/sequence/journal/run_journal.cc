@@ -73,9 +73,10 @@ void remove_whole(const fs::path& path) {
   }
 }
 
-/// Throws when a process works on a part of the run. The description is removed last: remains of an
-/// interrupted removal must not count for a newly described run.
-void remove_journal(const fs::path& folder) {
+/// Begins the run anew in a folder with records of another one. A description says first that they
+/// do not count, so that whatever interrupts this leaves one run or the other. Throws when a process
+/// works on a part of the run.
+void replace_run(const fs::path& folder, RunIdentity identity) {
   const std::vector<fs::path> entries = entries_of(folder);
   std::deque<FileDescriptor> locks;  // held until all is removed
   for (const fs::path& path : entries) {
@@ -88,9 +89,12 @@ void remove_journal(const fs::path& folder) {
                               folder.parent_path().string(), path.filename().string()));
     }
   }
+  identity.replaces_records = true;
+  write_text_file(folder / kIdentityFile, text_of(identity));
   std::ranges::for_each(entries, remove_whole);
   flush_folder(folder);
-  remove_whole(folder / kIdentityFile);
+  identity.replaces_records = false;
+  write_text_file(folder / kIdentityFile, text_of(identity));
 }
 
 bool has_records(const fs::path& folder) {
@@ -162,7 +166,7 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
   const fs::path folder = journal_folder.parent_path();
   if (opening == JournalOpening::kOverwrite &&
       (is_present(journal_folder) || has_records(journal_folder))) {
-    remove_journal(journal_folder);
+    replace_run(journal_folder, identity);
   }
   make_folder(journal_folder);
   if (opening != JournalOpening::kForce) {
@@ -176,7 +180,8 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
                               folder.string(),
                               identity.is_stream() ? "" : "`resume` to continue it or "));
     }
-    const std::string differs = difference(read_identity(journal_folder), identity);
+    const RunIdentity known = read_identity(journal_folder);
+    const std::string differs = difference(known, identity);
     if (!differs.empty()) {
       if (opening != JournalOpening::kForce) {
         throw Error(
@@ -186,6 +191,9 @@ RunJournal::RunJournal(const fs::path& journal_folder, const RunIdentity& identi
       }
       remove_whole(journal_folder / kShotsFile);  // of the other inputs or settings
       write_text_file(journal_folder / kIdentityFile, text_of(identity));
+    }
+    if (known.replaces_records) {
+      replace_run(journal_folder, identity);
     }
   }
   state_->descriptor = ::open(state_->path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
@@ -254,6 +262,9 @@ std::vector<std::string> RunJournal::parts(const fs::path& journal_folder) {
 
 JournalRecords RunJournal::read_records(const fs::path& journal_folder) {
   JournalRecords all;
+  if (is_present(journal_folder) && read_identity(journal_folder).replaces_records) {
+    return all;
+  }
   for (const fs::path& file : entries_of(journal_folder)) {
     if (!is_journal_of_part(file)) {
       continue;

@@ -34,6 +34,9 @@ struct RunIdentity {
   FrameRate sound_rate;              ///< of the frames of that video
   /// Times of all frames of the run; videos of its rate have them. Empty: a constant rate.
   std::optional<FrameTimes> frame_times;
+  /// Records in the folder are of another run; replacing it was interrupted. Not part of what
+  /// processes must agree on.
+  bool replaces_records = false;
 
   /// Times of the frames in videos of this rate; null: the rate is constant.
   [[nodiscard]] const FrameTimes* times_at(FrameRate rate) const {
@@ -99,7 +102,7 @@ enum class JournalOpening {
   kNew,       ///< no run; or, for a part of a run, the same run without this part
   kResume,    ///< no run, or the same run
   kForce,     ///< no run, or any run, whose results count as done
-  kOverwrite  ///< anything: an old journal is removed
+  kOverwrite  ///< anything: an old journal is removed; cut off, the old run or this one is there
 };
 
 /// The journal in DIR/.vantage: run.json describes the run, frames-PART.jsonl lists finished
