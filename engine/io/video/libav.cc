@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cerrno>
@@ -253,6 +254,16 @@ void read_only(AVFormatContext& input, const AVStream& stream) {
   for (unsigned i = 0; i < input.nb_streams; ++i) {
     input.streams[i]->discard = input.streams[i] == &stream ? AVDISCARD_DEFAULT : AVDISCARD_ALL;
   }
+}
+
+int read_error(const AVFormatContext& input) {
+  return input.pb == nullptr ? 0 : std::min(input.pb->error, 0);
+}
+
+int fetch_packet(AVFormatContext& input, AVPacket& packet) {
+  const int result = libav().av_read_frame(&input, &packet);
+  const int error = read_error(input);
+  return result == AVERROR_EOF && error < 0 ? error : result;
 }
 
 }  // namespace vantage

@@ -79,5 +79,10 @@ AVStream* find_video_stream(AVFormatContext& input, int track = kMainVideo);
 AVStream* find_sound_stream(AVFormatContext& input);
 /// Discards the packets of all other streams, except those already read by opening the file.
 void read_only(AVFormatContext& input, const AVStream& stream);
+/// FFmpeg's error when the system could not read the file, else 0. Demultiplexers may take it for
+/// the end.
+int read_error(const AVFormatContext& input);
+/// The next packet: 0, AVERROR_EOF after the last one, or another error of FFmpeg.
+int fetch_packet(AVFormatContext& input, AVPacket& packet);
 
 }  // namespace vantage

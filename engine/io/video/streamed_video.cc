@@ -80,7 +80,7 @@ void StreamedVideo::feed() {
   do {
     libav().av_packet_unref(packet_.get());
     bytes_->allow_silence();
-    result = libav().av_read_frame(input_.get(), packet_.get());
+    result = fetch_packet(*input_, *packet_);
   } while (result >= 0 && packet_->stream_index != stream_->index);
   const bool is_whole = result >= 0 && (packet_->flags & AV_PKT_FLAG_CORRUPT) == 0;
   if (!is_whole && bytes_->is_stopped()) {

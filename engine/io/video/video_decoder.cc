@@ -106,7 +106,7 @@ int VideoDecoder::read_from_file(AVPacket& packet) {
   int result = 0;
   do {
     libav().av_packet_unref(&packet);
-    result = libav().av_read_frame(input_.get(), &packet);
+    result = fetch_packet(*input_, packet);
   } while (result >= 0 && packet.stream_index != stream_->index);
   return result;
 }

@@ -123,7 +123,7 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
   std::int64_t last_shown = AV_NOPTS_VALUE;
   std::int64_t frames_end = std::numeric_limits<std::int64_t>::max();
   PacketTimes result;
-  while (libav().av_read_frame(input.get(), packet.get()) >= 0) {
+  while (fetch_packet(*input, *packet) >= 0) {
     const bool is_torn = !is_whole && (packet->flags & AV_PKT_FLAG_CORRUPT) != 0;
     if (packet->stream_index == stream_index && !is_torn && !cut.is_cut_off(*packet) &&
         shows_a_frame(*packet, codec)) {
@@ -141,6 +141,9 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
       frames_end = packet->pos + packet->size;
     }
     libav().av_packet_unref(packet.get());
+  }
+  if (const int error = read_error(*input); error < 0) {
+    throw Error(fmt::format("cannot read {}: {}", path.string(), libav_message(error)));
   }
   if (!is_whole || is_cut_raw_video(*input, frames_end, std::filesystem::file_size(path))) {
     result.cut_time = last_decoded == AV_NOPTS_VALUE ? last_decoded : last_decoded + 1;

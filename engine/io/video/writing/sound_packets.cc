@@ -87,7 +87,7 @@ SoundInput::SoundInput(const SoundTrack& track)
 
 bool SoundInput::read(AVPacket& packet) {
   for (;;) {
-    const int result = libav().av_read_frame(input_.get(), &packet);
+    const int result = fetch_packet(*input_, packet);
     if (result == AVERROR_EOF) {
       return false;
     }

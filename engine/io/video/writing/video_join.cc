@@ -47,10 +47,10 @@ class Segment {
 
   /// Reads the next packet; its pts becomes the index of its frame. False after the last one.
   bool read(AVPacket& packet) {
-    int result = libav().av_read_frame(input_.get(), &packet);
+    int result = fetch_packet(*input_, packet);
     while (result >= 0 && packet.stream_index != stream_->index) {
       libav().av_packet_unref(&packet);
-      result = libav().av_read_frame(input_.get(), &packet);
+      result = fetch_packet(*input_, packet);
     }
     if (result == AVERROR_EOF) {
       return false;
