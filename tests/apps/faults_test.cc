@@ -11,7 +11,7 @@ namespace vantage::faults_test {
 struct FaultyCommand {
   std::string name;
   std::string words;
-  std::string again;                  ///< words that continue it; empty: the same
+  std::string again{};                ///< words that continue it; empty: the same
   std::vector<std::string> before{};  ///< commands that make what it begins with in DIR/out
 };
 
@@ -28,64 +28,138 @@ const std::string kFilms =
 const std::string kPair =
     " DIR/scene/left/000000.png DIR/scene/right/000000.png --disparities=0:9 "
     "--threads 2 --quiet ";
-const std::string kScene =
-    "scene build --images DIR/images --disparities=0:9 --threads 2 --quiet "
-    "-o DIR/out";
+const std::string kPosed =
+    "scene build --images DIR/row/view-?.png --disparities=0:9 --threads 2 --quiet -o DIR/out "
+    "--poses DIR/poses.txt --intrinsics DIR/lens.txt";
+const std::string kRow =
+    "generate scene -o DIR/row --view 0 --view 1 --view 2 --width 32 --height 24 --quiet";
 
 const std::vector<FaultyCommand>& faulty_commands() {
   static const std::vector<FaultyCommand> commands = {
       {"Run", kFiles, kFiles + " --resume"},
       {"RunVideos", kVideos, kVideos + " --resume"},
-      {"RunOfVideos", kFilms, kFilms + " --resume"},
+      {"RunOfVideos",
+       kFilms,
+       kFilms + " --resume",
+       {"synth" + kPair + "-o DIR/left.mp4 --sweep 0:1:3",
+        "synth" + kPair + "-o DIR/right.mp4 --sweep 1:2:3"}},
       {"Resume", "run -o DIR/out --resume --quiet --frames all", "", {kVideos + " --frames 0-1"}},
-      {"Match",
-       "match" + kPair +
-           "-o DIR/out/d.pfm --preview DIR/out/p.png --unmatched DIR/out/u.png "
-           "--volume DIR/out/v.npy",
-       ""},
-      {"Synth", "synth" + kPair + "-o DIR/out/v.png --view 0.5", ""},
-      {"SynthVideo", "synth" + kPair + "-o DIR/out/v.mp4 --sweep 0:1:3", ""},
-      {"SceneBuild", kScene + " --copy-images", ""},
-      {"SceneBuildPosed", kScene + " --poses DIR/poses.txt --intrinsics DIR/lens.txt", ""},
+      {"Overwrite", kFiles + " --preset realtime --overwrite", "", {kFiles}},
       {"Merge", "merge DIR/out --quiet", "", {kVideos + " --shard 1/2", kVideos + " --shard 2/2"}},
       {"Verify", "verify DIR/out --quiet", "", {kFiles}},
-      {"GenerateScene", "generate scene -o DIR/out --width 32 --height 24 --quiet --overwrite", ""},
+      {"Match", "match" + kPair +
+                    "-o DIR/out/d.pfm --preview DIR/out/p.png --unmatched DIR/out/u.png "
+                    "--volume DIR/out/v.npy"},
+      {"Synth", "synth" + kPair + "-o DIR/out/v.png --view 0.5"},
+      {"SynthVideo", "synth" + kPair + "-o DIR/out/v.mp4 --sweep 0:1:3"},
+      {"View", "view" + kPair + "-o DIR/out/v.html"},
+      {"Rectify",
+       "rectify DIR/scene/left/000000.png DIR/scene/right/000000.png --quiet --overwrite "
+       "--calibration DIR/scene/calib.txt -o DIR/out --matrices DIR/out/m.yml "
+       "--valid-mask DIR/out/v.png"},
+      {"Reproject",
+       "reproject DIR/scene/left-disparity/000000.pfm --calibration DIR/scene/calib.txt --quiet "
+       "--depth DIR/out/d.png --cloud DIR/out/c.ply --mesh DIR/out/m.ply"},
+      {"SceneBuild",
+       "scene build --images DIR/row/view-?.png --disparities=0:9 --threads 2 --quiet "
+       "-o DIR/out --copy-images",
+       "",
+       {kRow}},
+      {"SceneBuildPosed", kPosed, "", {kRow}},
+      {"SceneView",
+       "scene view DIR/out -o DIR/out/v.mp4 --sweep 0:1:3 --quiet",
+       "",
+       {kRow, kPosed}},
+      {"SceneCloud", "scene cloud DIR/out -o DIR/out/c.ply --quiet", "", {kRow, kPosed}},
+      {"GenerateScene", "generate scene -o DIR/out --width 32 --height 24 --quiet --overwrite"},
   };
   return commands;
 }
 
-class SlowFaults : public testing::TestWithParam<FaultyCommand> {
+/// Smaller blocks come from what the process has, and libraries take what fails there for granted.
+constexpr std::size_t kLeastBytes = 4096;
+
+Words refused_allocation(int number, const std::string& counts) {
+  return preloaded(test_paths::allocation_count(),
+                   {"ALLOCATION_COUNT=" + counts, "ALLOCATION_FAIL=" + std::to_string(number),
+                    "ALLOCATION_BYTES=" + std::to_string(kLeastBytes)});
+}
+
+/// How many allocations of kLeastBytes there are.
+int allocations_of(const Words& words) {
+  const TemporaryFolder notes;
+  const std::string counts = notes / "counts";
+  succeeds(run_vantage(words, refused_allocation(0, counts)));
+  std::istringstream lines(read_file(counts));
+  std::size_t size = 0;
+  int sum = 0;
+  for (int count = 0; lines >> size >> count;) {
+    sum += size >= kLeastBytes ? count : 0;
+  }
+  return sum;
+}
+
+/// What may fail: calls of a function, allocations …
+struct FaultKind {
+  std::string name;
+  std::vector<int> places;  ///< which call, or from which byte on
+  std::function<Words(int place)> environment;
+};
+
+std::vector<int> numbers_from(int first, int last) {
+  std::vector<int> numbers(static_cast<std::size_t>(std::max(0, last - first + 1)));
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
+}
+
+class SlowFaults : public testing::TestWithParam<std::size_t> {
  protected:
   void SetUp() override {
     if (test_paths::is_sanitized()) {
       GTEST_SKIP() << "sanitizers have an allocator of their own";
     }
-    succeeds(
-        run_vantage(words_of("generate scene -o DIR/scene --frames 5 --width 32 --height 24 "
-                             "--quiet")));
-    succeeds(
-        run_vantage(words_of("generate scene -o DIR/row --view 0 --view 1 --view 2 --width 32 "
-                             "--height 24 --quiet")));
-    fs::create_directory(folder_ / "images");
-    for (const char* const name : {"/view-0.png", "/view-1.png", "/view-2.png"}) {
-      fs::rename(folder_ / "row" + name, folder_ / "images" + name);
-    }
     write_file(folder_ / "poses.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 2 0 0 0 0 0 1\n");
     write_file(folder_ / "lens.txt", "32 32 15.5 11.5\n");  // that of the scene
-    for (const char* const film :
-         {"-o DIR/left.mp4 --sweep 0:1:4", "-o DIR/right.mp4 --sweep 1:2:4"}) {
-      succeeds(run_vantage(words_of("synth" + kPair + film)));
-    }
     fs::create_directory(out_);
-    for (const std::string& command : GetParam().before) {
-      succeeds(run_vantage(words_of(command)));
+    succeeds(run_vantage(
+        words_of("generate scene -o DIR/scene --frames 3 --width 32 --height 24 --quiet")));
+    for (const std::string& before : faulty_.before) {
+      succeeds(run_vantage(words_of(before)));
     }
     fs::copy(out_, before_.path(), fs::copy_options::recursive);
-    begin_again();
     begun_ = results_in(out_);
     inputs_ = inputs();
-    calls_ = calls_of(command(), folder_.path().string());
+  }
+
+  /// All that may fail while the command works. Makes expected_.
+  std::vector<FaultKind> possible_faults() {
+    const std::string folder = folder_.path().string();
+    const FileCalls calls = calls_of(command(), folder);
     expected_ = results_in(out_);
+    std::vector<FaultKind> kinds;
+    for (const auto& [name, count] : calls.counts) {
+      kinds.push_back({name, numbers_from(1, count), [=, name = name](int call) {
+                         return fault_at("FAIL", name + ":" + std::to_string(call), folder);
+                       }});
+    }
+    std::vector<int> spaces;
+    int sum = 0;
+    for (const int bytes : calls.writes) {
+      spaces.insert(spaces.end(), {sum, sum + bytes / 2});
+      sum += bytes;
+    }
+    if (!spaces.empty()) {
+      kinds.push_back(
+          {"space", spaces, [=](int bytes) { return fault_at("SPACE", bytes, folder); }});
+    }
+    kinds.push_back(
+        {"short", {1, 100, -1}, [=](int most) { return fault_at("SHORT", most, folder); }});
+    begin_again();
+    // Those before are of libraries that the system's loader opens.
+    const int first = allocations_of({"--version"}) + 1;
+    kinds.push_back({"allocation", numbers_from(first, allocations_of(command())),
+                     [this](int number) { return refused_allocation(number, notes_ / "counts"); }});
+    return kinds;
   }
 
   [[nodiscard]] Words words_of(const std::string& command) const {
@@ -97,7 +171,7 @@ class SlowFaults : public testing::TestWithParam<FaultyCommand> {
     }
     return all;
   }
-  [[nodiscard]] Words command() const { return words_of(GetParam().words); }
+  [[nodiscard]] Words command() const { return words_of(faulty_.words); }
 
   static bool holds(const FolderContent& content, const std::string& name,
                     const std::string& bytes) {
@@ -115,15 +189,22 @@ class SlowFaults : public testing::TestWithParam<FaultyCommand> {
   }
 
   /// Whatever happened, what has a name is whole; and afterwards everything can be had.
-  void check(const Words& environment, bool may_leave_files = false) {
+  void check(const FaultKind& kind, int place) {
+    SCOPED_TRACE(kind.name + " " + std::to_string(place));
+    // What cannot be removed stays.
+    const bool may_leave_files = kind.name == "remove" || kind.name == "unlinkat";
+    const std::string& again = faulty_.again;
     begin_again();
-    const ProcessResult result = run_vantage(command(), environment);
-    ++faults_;
+    const ProcessResult result = run_vantage(command(), kind.environment(place));
     EXPECT_TRUE(inputs() == inputs_);
     if (result.exit_code == 0) {
       EXPECT_TRUE(may_leave_files || same_files(results_in(out_), expected_));
+      if (again.empty()) {
+        return;
+      }
     } else {
       ++failures_;
+      EXPECT_NE(kind.name, "short");
       expect_one_line(result, 1, name_of_command());
       for (const auto& [name, bytes] : results_in(out_)) {
         // What a scene has so far is in its file.
@@ -133,17 +214,8 @@ class SlowFaults : public testing::TestWithParam<FaultyCommand> {
             << name << " after " << result.err;
       }
     }
-    const std::string& again = GetParam().again;
     succeeds(run_vantage(again.empty() ? command() : words_of(again)));
     EXPECT_TRUE(same_files(results_in(out_), expected_)) << "after " << result.err;
-  }
-
-  void TearDown() override {
-    RecordProperty("faults", faults_);
-    RecordProperty("failures", failures_);
-    if (runs_everything()) {
-      std::cout << GetParam().name << ": " << faults_ << " faults, " << failures_ << " failures\n";
-    }
   }
 
   [[nodiscard]] std::string name_of_command() const {
@@ -152,90 +224,38 @@ class SlowFaults : public testing::TestWithParam<FaultyCommand> {
     return has_two_words ? all[0] + " " + all[1] : all[0];
   }
 
+  const FaultyCommand& faulty_ = faulty_commands()[GetParam()];
   TemporaryFolder folder_;
   TemporaryFolder before_;
+  TemporaryFolder notes_;
   std::string out_ = folder_ / "out";
   FolderContent begun_;  ///< what out_ holds at first
   FolderContent inputs_;
   FolderContent expected_;
-  FileCalls calls_;
-  int faults_ = 0;
   int failures_ = 0;
 };
 
-TEST_P(SlowFaults, AnyCallMayFail) {
+/// A sample, of the first command of all kinds; with VANTAGE_TEST_ALL everything.
+TEST_P(SlowFaults, EndWellOrInOneLine) {
   SCOPED_TRACE(test::sample_name());
-  for (const auto& [name, count] : calls_.counts) {
-    for (const int call : sampled_range(1, count, 0, 61)) {
-      const std::string fault = name + ":" + std::to_string(call);
-      SCOPED_TRACE(fault);
-      // What cannot be removed stays.
-      check(fault_at("FAIL", fault, folder_.path().string()),
-            name == "remove" || name == "unlinkat");
+  const auto stream = static_cast<std::uint32_t>(GetParam());
+  SampledNumbers numbers(stream);
+  const std::vector<FaultKind> kinds = possible_faults();
+  for (const FaultKind& kind : stream == 0 ? kinds : sampled(kinds, 3, stream)) {
+    failures_ = 0;
+    const int one = kind.places[numbers.below(kind.places.size())];
+    const std::vector<int> places = test::runs_everything() ? kind.places : std::vector{one};
+    for (const int place : places) {
+      check(kind, place);
     }
+    std::cout << faulty_.name << ": " << kind.name << " " << places.size() << ", of which "
+              << failures_ << " fail\n";
   }
 }
 
-TEST_P(SlowFaults, TheDiskMayBeFullFromAnyByteOn) {
-  SCOPED_TRACE(test::sample_name());
-  std::vector<int> spaces;
-  int sum = 0;
-  for (const int bytes : calls_.writes) {
-    spaces.insert(spaces.end(), {sum, sum + bytes / 2});
-    sum += bytes;
-  }
-  if (spaces.empty()) {
-    GTEST_SKIP() << "writes nothing";
-  }
-  for (const int space : sampled(spaces, 2, 67)) {
-    SCOPED_TRACE("space for " + std::to_string(space) + " bytes");
-    check(fault_at("SPACE", space, folder_.path().string()));
-  }
-}
-
-TEST_P(SlowFaults, ReadsAndWritesMayBeShort) {
-  for (const int most : {1, 100, -1}) {
-    SCOPED_TRACE("at most " + std::to_string(most) + " bytes");
-    const int failures = failures_;
-    check(fault_at("SHORT", most, folder_.path().string()));
-    EXPECT_EQ(failures_, failures);
-  }
-}
-
-/// Blocks of images, tables and slots: smaller ones come from what the process has, and libraries
-/// take what fails there for granted.
-TEST_P(SlowFaults, AnyAllocationMayFail) {
-  SCOPED_TRACE(test::sample_name());
-  constexpr std::size_t kLeastBytes = 4096;
-  const TemporaryFolder notes;
-  const std::string counts = notes / "counts";
-  const auto failing = [&](int allocation) {
-    return preloaded(test_paths::allocation_count(),
-                     {"ALLOCATION_COUNT=" + counts, "ALLOCATION_FAIL=" + std::to_string(allocation),
-                      "ALLOCATION_BYTES=" + std::to_string(kLeastBytes)});
-  };
-  const auto allocations = [&](const Words& words) {
-    succeeds(run_vantage(words, failing(0)));
-    std::istringstream lines(read_file(counts));
-    std::size_t size = 0;
-    int count = 0;
-    int sum = 0;
-    while (lines >> size >> count) {
-      sum += size >= kLeastBytes ? count : 0;
-    }
-    return sum;
-  };
-  begin_again();
-  // Those before are of libraries that the system's loader opens.
-  for (const int allocation :
-       sampled_range(allocations({"--version"}) + 1, allocations(command()), 1, 47)) {
-    SCOPED_TRACE("allocation " + std::to_string(allocation));
-    check(failing(allocation));
-  }
-}
-
-INSTANTIATE_TEST_SUITE_P(Commands, SlowFaults, testing::ValuesIn(faulty_commands()),
-                         [](const auto& one) { return one.param.name; });
+INSTANTIATE_TEST_SUITE_P(Commands, SlowFaults,
+                         testing::Range<std::size_t>(0, faulty_commands().size()),
+                         [](const auto& one) { return faulty_commands()[one.param].name; });
 
 class OutOfMemory : public RunTest {};
 

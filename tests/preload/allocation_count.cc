@@ -9,8 +9,6 @@
 // What the system's loader and the libraries that it opens allocate meanwhile does not fail: it
 // ends the process.
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -19,6 +17,8 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+
+#include "tests/preload/next_function.h"
 
 namespace {
 
@@ -81,8 +81,7 @@ void* __libc_realloc(void* block, std::size_t bytes);
 void* __libc_memalign(std::size_t alignment, std::size_t bytes);
 
 void* dlopen(const char* file, int flags) noexcept {
-  static auto* const open =
-      reinterpret_cast<void* (*)(const char*, int)>(::dlsym(RTLD_NEXT, "dlopen"));
+  static auto* const open = next<void*(const char*, int)>("dlopen");
   ++openings;
   void* const library = open(file, flags);
   --openings;

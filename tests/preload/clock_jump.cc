@@ -1,7 +1,6 @@
 // Preloaded into a program under test: the clock of the day jumps by hours, forth and back, from
 // one look at it to the next. Clocks that only count on are left alone.
 
-#include <dlfcn.h>
 #include <sys/time.h>
 
 #include <array>
@@ -9,6 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+
+#include "tests/preload/next_function.h"
 
 namespace {
 
@@ -18,11 +19,6 @@ std::atomic<unsigned> looks{0};  // NOLINT(cppcoreguidelines-avoid-non-const-glo
 time_t jump_s() {
   constexpr std::array<time_t, 5> kJumpsS = {0, 7200, -10800, 86400 * 40, -5};
   return kJumpsS[++looks % kJumpsS.size()];
-}
-
-template <typename Function>
-Function* next(const char* name) {
-  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
 }
 
 /// So that a test can tell whether the clock was looked at at all.

@@ -14,21 +14,21 @@
 //                     what the first kMaxNamed of them were and how much they were to move
 //                     ("write 120")
 
-#include <dlfcn.h>
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string>
+#include <string_view>
+
+#include "tests/preload/file_calls.h"
 
 namespace {
 
@@ -56,14 +56,9 @@ long number_in(const char* variable) {
   return text == nullptr ? 0 : std::atol(text);
 }
 
-template <typename Function>
-Function* next(const char* name) {
-  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
-}
-
-bool is_below_folder(const char* path) {
+bool is_below_folder(std::string_view path) {
   const char* folder = std::getenv("IO_FAULTS_FOLDER");
-  return folder != nullptr && std::strncmp(path, folder, std::strlen(folder)) == 0;
+  return folder != nullptr && path.starts_with(folder);
 }
 
 bool is_named_to_fail(const char* name) {
@@ -81,7 +76,7 @@ bool is_full() {
 enum class Effect { kNone, kChange, kNeedsSpace };
 
 /// Counts a call; true when it has to fail, with errno.
-bool fails(const char* name, const char* path, Effect effect, std::size_t bytes = 0) {
+bool fails(const char* name, std::string_view path, Effect effect, std::size_t bytes = 0) {
   if (!is_below_folder(path)) {
     return false;
   }
@@ -104,17 +99,6 @@ bool fails(const char* name, const char* path, Effect effect, std::size_t bytes 
   return false;
 }
 
-/// The file of a descriptor.
-struct OpenFile {
-  explicit OpenFile(int descriptor) {
-    char link[64];
-    std::snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
-    const ssize_t length = ::readlink(link, path, sizeof path - 1);
-    path[std::max<ssize_t>(length, 0)] = 0;
-  }
-  char path[4096];
-};
-
 std::size_t place_of(int descriptor) {
   return std::min(static_cast<std::size_t>(std::max(descriptor, 0)), kMaxDescriptors - 1);
 }
@@ -127,14 +111,14 @@ off_t size_of(int descriptor) {
 /// fsync, fdatasync, close: `flush` does it.
 template <typename Flush>
 int flush_as(const char* name, int descriptor, Effect effect, const Flush& flush) {
-  const OpenFile file(descriptor);
+  const std::string path = path_of(descriptor);
   const off_t bytes = size_of(descriptor);
-  const bool is_failing = fails(name, file.path, effect);
+  const bool is_failing = fails(name, path, effect);
   const bool is_close = effect == Effect::kNone;
   const bool is_written = (::fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY;
   std::atomic<off_t>& safe = flushed_bytes[place_of(descriptor)];
   if (is_failing && bytes > safe && (is_written || !is_close)) {
-    (void)!::truncate(file.path, safe + (bytes - safe) / 2);
+    (void)!::truncate(path.c_str(), safe + (bytes - safe) / 2);
   }
   if (!is_failing && !is_close) {
     safe = bytes;
@@ -159,11 +143,11 @@ std::size_t moved(std::size_t bytes) {
 /// Write calls: `write` moves as many bytes as it is told.
 template <typename Write>
 ssize_t write_as(const char* name, int descriptor, std::size_t bytes, const Write& write) {
-  const OpenFile file(descriptor);
-  if (fails(name, file.path, Effect::kNeedsSpace, bytes)) {
+  const std::string path = path_of(descriptor);
+  if (fails(name, path, Effect::kNeedsSpace, bytes)) {
     return -1;
   }
-  if (!is_below_folder(file.path)) {
+  if (!is_below_folder(path)) {
     return write(bytes);
   }
   std::size_t part = moved(bytes);
@@ -181,11 +165,11 @@ ssize_t write_as(const char* name, int descriptor, std::size_t bytes, const Writ
 
 template <typename Read>
 ssize_t read_as(const char* name, int descriptor, std::size_t bytes, const Read& read) {
-  const OpenFile file(descriptor);
-  if (fails(name, file.path, Effect::kNone)) {
+  const std::string path = path_of(descriptor);
+  if (fails(name, path, Effect::kNone)) {
     return -1;
   }
-  return read(is_below_folder(file.path) ? moved(bytes) : bytes);
+  return read(is_below_folder(path) ? moved(bytes) : bytes);
 }
 
 struct CountAtEnd {
@@ -205,11 +189,10 @@ struct CountAtEnd {
 };
 const CountAtEnd count_at_end;
 
-/// open() or open64(), whichever `name` says; their mode comes third when there is one.
-int open_as(const char* name, const char* path, int flags, va_list arguments) {
-  const bool creates = (flags & O_CREAT) != 0;
-  const mode_t mode = creates ? static_cast<mode_t>(va_arg(arguments, unsigned)) : 0;
-  if (creates && fails(name, path, Effect::kNeedsSpace)) {
+}  // namespace
+
+static int open_as(const char* name, const char* path, int flags, mode_t mode) {
+  if ((flags & O_CREAT) != 0 && fails(name, path, Effect::kNeedsSpace)) {
     return -1;
   }
   const int descriptor = next<int(const char*, int, ...)>(name)(path, flags, mode);
@@ -217,25 +200,7 @@ int open_as(const char* name, const char* path, int flags, va_list arguments) {
   return descriptor;
 }
 
-}  // namespace
-
 extern "C" {
-
-int open(const char* path, int flags, ...) {
-  va_list arguments;
-  va_start(arguments, flags);
-  const int descriptor = open_as("open", path, flags, arguments);
-  va_end(arguments);
-  return descriptor;
-}
-
-int open64(const char* path, int flags, ...) {
-  va_list arguments;
-  va_start(arguments, flags);
-  const int descriptor = open_as("open64", path, flags, arguments);
-  va_end(arguments);
-  return descriptor;
-}
 
 ssize_t read(int descriptor, void* bytes, size_t size) {
   return read_as("read", descriptor, size, [&](size_t part) {
@@ -289,8 +254,8 @@ int fdatasync(int descriptor) {
 }
 
 int fallocate(int descriptor, int mode, off_t offset, off_t length) {
-  const OpenFile file(descriptor);
-  if (is_below_folder(file.path) && is_full()) {
+  const std::string path = path_of(descriptor);
+  if (is_below_folder(path) && is_full()) {
     errno = ENOSPC;
     return -1;
   }
@@ -298,7 +263,7 @@ int fallocate(int descriptor, int mode, off_t offset, off_t length) {
 }
 
 int ftruncate(int descriptor, off_t length) {
-  return fails("ftruncate", OpenFile(descriptor).path, Effect::kChange)
+  return fails("ftruncate", path_of(descriptor), Effect::kChange)
              ? -1
              : next<int(int, off_t)>("ftruncate")(descriptor, length);
 }
@@ -320,7 +285,7 @@ int remove(const char* path) {
 }
 
 int unlinkat(int folder, const char* path, int flags) {
-  return fails("unlinkat", OpenFile(folder).path, Effect::kChange)
+  return fails("unlinkat", path_of(folder), Effect::kChange)
              ? -1
              : next<int(int, const char*, int)>("unlinkat")(folder, path, flags);
 }

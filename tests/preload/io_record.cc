@@ -9,20 +9,17 @@
 //                     ("create") or empties it ("truncate").
 // A lock is held during each call, so that the order of the records is that of the calls.
 
-#include <dlfcn.h>
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <string>
 #include <string_view>
+
+#include "tests/preload/file_calls.h"
 
 namespace {
 
@@ -31,21 +28,9 @@ std::mutex& recording() {
   return mutex;
 }
 
-template <typename Function>
-Function* next(const char* name) {
-  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
-}
-
 bool is_recorded(std::string_view path) {
   static const char* const folder = std::getenv("IO_RECORD_FOLDER");
   return folder != nullptr && path.starts_with(folder);
-}
-
-std::string path_of(int descriptor) {
-  char path[4096];
-  const std::string link = "/proc/self/fd/" + std::to_string(descriptor);
-  const ssize_t length = ::readlink(link.c_str(), path, sizeof path);
-  return {path, static_cast<std::size_t>(std::max<ssize_t>(length, 0))};
 }
 
 void record(const char* call, const std::string& path, long number = 0,
@@ -97,9 +82,9 @@ ssize_t recorded_write(int descriptor, off_t offset, const char* bytes, const Wr
   return written;
 }
 
-/// open() or open64(), whichever `name` says; their mode comes third when there is one.
-int open_as(const char* name, const char* path, int flags, va_list arguments) {
-  const mode_t mode = (flags & O_CREAT) != 0 ? static_cast<mode_t>(va_arg(arguments, unsigned)) : 0;
+}  // namespace
+
+static int open_as(const char* name, const char* path, int flags, mode_t mode) {
   const auto open = [&] { return next<int(const char*, int, ...)>(name)(path, flags, mode); };
   if ((flags & (O_CREAT | O_TRUNC)) == 0 || !is_recorded(path)) {
     return open();
@@ -113,25 +98,7 @@ int open_as(const char* name, const char* path, int flags, va_list arguments) {
   return descriptor;
 }
 
-}  // namespace
-
 extern "C" {
-
-int open(const char* path, int flags, ...) {
-  va_list arguments;
-  va_start(arguments, flags);
-  const int descriptor = open_as("open", path, flags, arguments);
-  va_end(arguments);
-  return descriptor;
-}
-
-int open64(const char* path, int flags, ...) {
-  va_list arguments;
-  va_start(arguments, flags);
-  const int descriptor = open_as("open64", path, flags, arguments);
-  va_end(arguments);
-  return descriptor;
-}
 
 ssize_t write(int descriptor, const void* bytes, size_t size) {
   return recorded_write(descriptor, -1, static_cast<const char*>(bytes), [&] {
