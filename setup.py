@@ -37,7 +37,9 @@ class CMakeBuild(build_ext):
                        check=True)
         target = pathlib.Path(self.get_ext_fullpath(ext.name))
         target.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copy2(build_dir / "python/vantage" / target.name, target)
+        built = build_dir / "python/vantage"
+        for file in (built / target.name, *built.glob("*.pyi"), built / "_option_texts.py"):
+            shutil.copy2(file, target.parent / file.name)
 
 
 # setuptools writes beside the other builds, not into the sources.

@@ -105,6 +105,7 @@ py::array colours(const py::object& disparity, const py::object& limits) {
 
 void bind_files(py::module_& module) {
   module.def("read_image", &read_image);
+  declare_options(module, "read_image", ThreadOptions::kNone, add_reading_settings);
   module.def("write_image", &write_image);
   module.def("read_disparity", &read_map<read_disparity>);
   module.def("read_depth", &read_map<read_depth>);

@@ -195,7 +195,7 @@ std::optional<StereoCalibration> MatchResult::cameras(
 py::array MatchResult::depth(const std::optional<StereoCalibration>& calibration,
                              const py::dict& keywords) const {
   require_rectified("depth");
-  const MetricOptions options = metric_options(MetricOutput::kDepth, keywords);
+  const MetricOptions options = metric_options(MetricOutput::kDepth, MapKind::kResult, keywords);
   return array_of(on_threads_of(execution_, [&] {
     const MetricCamera camera =
         metric_camera(metric_map(), cameras(calibration), options, MetricOutput::kDepth);
@@ -206,7 +206,8 @@ py::array MatchResult::depth(const std::optional<StereoCalibration>& calibration
 py::array MatchResult::depth_resolution(const std::optional<StereoCalibration>& calibration,
                                         const py::dict& keywords) const {
   require_rectified("depth_resolution");
-  const MetricOptions options = metric_options(MetricOutput::kDepthResolution, keywords);
+  const MetricOptions options =
+      metric_options(MetricOutput::kDepthResolution, MapKind::kResult, keywords);
   const bool has_fractions = computed_.options.resolved().subpixel != Subpixel::kNone;
   return array_of(on_threads_of(execution_, [&] {
     const MetricCamera camera =
@@ -219,7 +220,7 @@ template <typename Make>
 auto MatchResult::make_points(const std::optional<StereoCalibration>& calibration,
                               const py::dict& keywords, const Make& make) {
   require_rectified("a cloud or mesh");
-  const MetricOptions options = metric_options(MetricOutput::kPoints, keywords);
+  const MetricOptions options = metric_options(MetricOutput::kPoints, MapKind::kResult, keywords);
   const MetricCamera camera =
       metric_camera(metric_map(), cameras(calibration), options, MetricOutput::kPoints);
   if (options.cloud.reads_confidence()) {

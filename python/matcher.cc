@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
-
 #include "engine/io/images/scene_mask.h"
 #include "engine/options/pair_source_settings.h"
 #include "python/arrays.h"
@@ -14,14 +12,22 @@
 namespace vantage::python {
 namespace py = pybind11;
 
-MatchSetup match_setup(py::dict keywords) {
-  MatchSetup setup;
-  setup.execution = &take_execution(keywords);
-  Settings settings;
+namespace {
+
+void add_setup_settings(Settings& settings, MatchSetup& setup) {
   add_reference_setting(settings, setup.options.reference);
   add_match_settings(settings, setup.options);
   add_white_level_setting(settings, setup.white_level);
   add_rows_setting(settings, setup.rows);
+}
+
+}  // namespace
+
+MatchSetup match_setup(py::dict keywords) {
+  MatchSetup setup;
+  setup.execution = &take_execution(keywords);
+  Settings settings;
+  add_setup_settings(settings, setup);
   set_options(settings, keywords);
   return setup;
 }
@@ -110,16 +116,10 @@ std::unique_ptr<MatchResult> Matcher::compute(const ImageArguments& arguments,
 
 py::dict Matcher::options() {
   Settings settings;
-  add_reference_setting(settings, setup_.options.reference);
-  add_match_settings(settings, setup_.options);
-  add_white_level_setting(settings, setup_.white_level);
-  add_rows_setting(settings, setup_.rows);
-  const SettingValue values = settings.values();
+  add_setup_settings(settings, setup_);
   py::dict result;
-  for (const auto& [name, value] : values.items()) {
-    std::string keyword = name;
-    std::replace(keyword.begin(), keyword.end(), '-', '_');
-    result[keyword.c_str()] = to_python(value);
+  for (const Setting& setting : settings.all()) {
+    result[keyword_of(setting.name).c_str()] = to_python(setting.get());
   }
   return result;
 }
@@ -131,6 +131,7 @@ std::string Matcher::text() const {
 }
 
 void bind_matcher(py::module_& module) {
+  declare_options(module, "Matcher", ThreadOptions::kTaken, add_setup_settings);
   py::class_<Matcher>(module, "Matcher")
       .def(py::init<const std::optional<StereoCalibration>&, bool, const py::dict&>())
       .def("compute",

@@ -17,9 +17,13 @@
 namespace vantage::python {
 namespace py = pybind11;
 
-MetricOptions metric_options(MetricOutput output, const py::dict& keywords) {
-  MetricOptions options;
-  Settings settings;
+namespace {
+
+void add_metric_settings(Settings& settings, MetricOptions& options, MetricOutput output,
+                         MapKind map) {
+  if (map == MapKind::kArray) {
+    add_reference_setting(settings, options.side);
+  }
   add_rig_scale_settings(settings, options.rig);
   if (output == MetricOutput::kPoints) {
     add_cloud_settings(settings, options.cloud);
@@ -28,6 +32,24 @@ MetricOptions metric_options(MetricOutput output, const py::dict& keywords) {
   } else if (output == MetricOutput::kDepthResolution) {
     add_disparity_resolution_setting(settings, options.disparity_resolution_px);
   }
+}
+
+template <MetricOutput output, MapKind map>
+void declare_metric_options(py::module_& module, const char* call) {
+  declare_options<MetricOptions>(
+      module, call, map == MapKind::kArray ? ThreadOptions::kTaken : ThreadOptions::kNone,
+      [](Settings& settings, MetricOptions& options) {
+        add_metric_settings(settings, options, output, map);
+      },
+      {"already-rectified"});
+}
+
+}  // namespace
+
+MetricOptions metric_options(MetricOutput output, MapKind map, const py::dict& keywords) {
+  MetricOptions options;
+  Settings settings;
+  add_metric_settings(settings, options, output, map);
   set_options(settings, keywords);
   options.cloud.validate();
   require_disparity_resolution(options.disparity_resolution_px);
@@ -100,27 +122,13 @@ using Calibration = std::optional<StereoCalibration>;
 /// Of maps without levels, whose winners have fractions.
 constexpr double kFractionalStep_px = 0.1;
 
-/// The `reference` of keyword arguments, taken out of them.
-Side take_reference(py::dict& keywords) {
-  MatchOptions options;
-  Settings settings;
-  add_reference_setting(settings, options.reference);
-  py::dict given;
-  if (keywords.contains("reference")) {
-    given["reference"] = keywords.attr("pop")("reference");
-  }
-  set_options(settings, given);
-  return options.reference;
-}
-
 /// Makes a map of a disparity map: depths or their resolution.
 py::array to_metres(MetricOutput output, const py::object& disparity,
                     const Calibration& calibration, py::dict keywords) {
   Execution& execution = take_execution(keywords);
-  const Side side = take_reference(keywords);
-  const MetricOptions options = metric_options(output, keywords);
+  const MetricOptions options = metric_options(output, MapKind::kArray, keywords);
   const DisparityMap map = map_from(disparity, "disparity");
-  const MetricMap source{.disparity_px = map.view(), .side = side};
+  const MetricMap source{.disparity_px = map.view(), .side = options.side};
   return array_of(on_threads_of(execution, [&] {
     const MetricCamera camera = metric_camera(source, calibration, options, output);
     if (output == MetricOutput::kDisparity) {
@@ -141,8 +149,7 @@ class MapArrays {
             const py::object& confidence, bool bgr, py::dict keywords)
       : execution_(take_execution(keywords)),
         map_(map_from(disparity, "disparity")),
-        side_(take_reference(keywords)),
-        options_(metric_options(MetricOutput::kPoints, keywords)),
+        options_(metric_options(MetricOutput::kPoints, MapKind::kArray, keywords)),
         image_(image, bgr ? ChannelOrder::kBgr : ChannelOrder::kRgb, "image") {
     WhiteLevelSearch search;
     search.add(image_.photograph());
@@ -163,8 +170,9 @@ class MapArrays {
   auto with_source(const Calibration& calibration, const Make& make) const {
     return on_threads_of(execution_, [&] {
       const Photograph photograph = image_.photograph(white_level_);
-      const MetricCamera camera = metric_camera({.disparity_px = map_.view(), .side = side_},
-                                                calibration, options_, MetricOutput::kPoints);
+      const MetricCamera camera =
+          metric_camera({.disparity_px = map_.view(), .side = options_.side}, calibration, options_,
+                        MetricOutput::kPoints);
       return make(CloudSource{.disparity_px = map_.view(),
                               .colours = &photograph,
                               .unmatched = unmatched_.view(),
@@ -177,7 +185,6 @@ class MapArrays {
  private:
   Execution& execution_;
   DisparityMap map_;
-  Side side_;
   MetricOptions options_;
   PixelArray image_;
   WhiteLevel white_level_;
@@ -203,9 +210,10 @@ FramedMesh to_mesh(const py::object& disparity, const py::object& image,
 py::array to_points(const py::object& disparity, const StereoCalibration& calibration,
                     py::dict keywords) {
   Execution& execution = take_execution(keywords);
-  const Side side = take_reference(keywords);
-  Settings none;
-  set_options(none, keywords);
+  Side side = Side::kLeft;
+  Settings settings;
+  add_reference_setting(settings, side);
+  set_options(settings, keywords);
   const DisparityMap map = map_from(disparity, "disparity");
   if (!calibration.is_rectified) {
     throw Error("the calibration is not one of rectified images, expected that of rectify()");
@@ -236,6 +244,18 @@ void bind_metres(py::module_& module) {
   module.def("cloud", &to_cloud);
   module.def("mesh", &to_mesh);
   module.def("reproject", &to_points);
+  using enum MetricOutput;
+  declare_metric_options<kDepth, MapKind::kArray>(module, "depth");
+  declare_metric_options<kDepthResolution, MapKind::kArray>(module, "depth_resolution");
+  declare_metric_options<kDisparity, MapKind::kArray>(module, "disparity");
+  declare_metric_options<kPoints, MapKind::kArray>(module, "cloud");
+  declare_metric_options<kPoints, MapKind::kArray>(module, "mesh");
+  declare_metric_options<kDepth, MapKind::kResult>(module, "MatchResult.depth");
+  declare_metric_options<kDepthResolution, MapKind::kResult>(module,
+                                                             "MatchResult.depth_resolution");
+  declare_metric_options<kPoints, MapKind::kResult>(module, "MatchResult.cloud");
+  declare_metric_options<kPoints, MapKind::kResult>(module, "MatchResult.mesh");
+  declare_options(module, "reproject", ThreadOptions::kTaken, add_reference_setting);
 }
 
 }  // namespace vantage::python

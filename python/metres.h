@@ -19,10 +19,14 @@ struct MetricOptions {
   RigScale rig;
   CloudOptions cloud;
   std::optional<double> disparity_resolution_px;
+  Side side = Side::kLeft;  ///< of a map that is an array
 };
 
+/// The map that is turned: a MatchResult knows its side, of an array it is an option.
+enum class MapKind { kResult, kArray };
+
 /// Reads them from keyword arguments. Throws UsageError.
-MetricOptions metric_options(MetricOutput output, const pybind11::dict& keywords);
+MetricOptions metric_options(MetricOutput output, MapKind map, const pybind11::dict& keywords);
 
 /// The camera of outputs in metres, and what a file says of its frame.
 struct MetricCamera {

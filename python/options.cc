@@ -1,8 +1,10 @@
 #include "python/options.h"
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,7 +20,13 @@ namespace vantage::python {
 namespace py = pybind11;
 namespace {
 
+/// A reserved word of Python, which has an underscore at its end as a keyword.
+constexpr std::string_view kReserved = "lambda";
+
 std::string option_name(std::string name) {
+  if (name.ends_with('_') && name.starts_with(kReserved)) {
+    name.pop_back();
+  }
   std::replace(name.begin(), name.end(), '_', '-');
   return name;
 }
@@ -67,48 +75,74 @@ SettingValue to_value(const py::handle& object) {
                                std::string(py::str(py::type::of(object).attr("__name__")))));
 }
 
-SettingValue to_setting(const std::string& name, const py::handle& object) {
-  try {
-    const SettingValue value = to_value(object);
-    const bool is_range = name == "disparities" || name == "disparities-y" || name == "volume-rows";
-    if (is_range && value.is_array() && value.size() == 2 && value[0].is_number_integer() &&
-        value[1].is_number_integer()) {
-      return fmt::format("{}:{}", value[0].get<long long>(), value[1].get<long long>());
-    }
-    if (name == "roi" && value.is_array() && value.size() == 4) {
-      return fmt::format("{},{},{},{}", value[0].dump(), value[1].dump(), value[2].dump(),
-                         value[3].dump());
-    }
-    const bool is_point = name == "principal-point" || name == "stereo-views";
-    if (is_point && value.is_array() && value.size() == 2 && value[0].is_number() &&
-        value[1].is_number()) {
-      return fmt::format("{},{}", value[0].get<double>(), value[1].get<double>());
-    }
+/// The text of a range, a point or a rectangle that is given as a sequence of numbers; other values
+/// as they are.
+SettingValue with_numbers_joined(ValueKind kind, const SettingValue& value) {
+  const bool is_range = kind == ValueKind::kRange;
+  const std::size_t count = kind == ValueKind::kRectangle           ? 4
+                            : is_range || kind == ValueKind::kPoint ? 2
+                                                                    : 0;
+  const auto fits = [is_range](const SettingValue& member) {
+    return is_range ? member.is_number_integer() : member.is_number();
+  };
+  if (!value.is_array() || value.empty() || value.size() != count ||
+      !std::all_of(value.begin(), value.end(), fits)) {
     return value;
-  } catch (const UsageError& error) {
-    throw UsageError(fmt::format("{} {}", name, error.what()));
   }
+  std::string text;
+  for (const SettingValue& member : value) {
+    text += (text.empty() ? "" : is_range ? ":" : ",") + member.dump();
+  }
+  return text;
+}
+
+SettingValue to_setting(const Setting& setting, const py::handle& object) {
+  try {
+    return with_numbers_joined(setting.kind, to_value(object));
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("{} {}", setting.name, error.what()));
+  }
+}
+
+/// The names of ValueKind, in its order, for _options.py.
+constexpr std::array kKindNames = {"text",   "word",    "truth",           "integer",
+                                   "number", "numbers", "integer_or_text", "number_or_text",
+                                   "range",  "point",   "rectangle",       "poses"};
+static_assert(kKindNames.size() == static_cast<std::size_t>(ValueKind::kPoses) + 1);
+
+py::dict row_of(const Setting& setting) {
+  using namespace py::literals;  // NOLINT(google-build-using-namespace): of pybind11
+  return py::dict(
+      "name"_a = keyword_of(setting.name),
+      "kind"_a = kKindNames.at(static_cast<std::size_t>(setting.kind)), "words"_a = setting.words,
+      "is_list"_a = setting.list, "is_path"_a = setting.path != PathRole::kNone,
+      "default"_a = to_python(setting.get()), "help"_a = setting.help, "group"_a = setting.group);
 }
 
 }  // namespace
 
+std::string keyword_of(std::string name) {
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
 void set_options(Settings& settings, const py::dict& options) {
   SettingValue values = SettingValue::object();
-  const SettingValue known = settings.values();
   for (const auto& [key, value] : options) {
     const std::string given = py::str(key);
     const std::string name = option_name(given);
-    if (!known.contains(name)) {
+    const Setting* const setting = settings.find(name);
+    if (setting == nullptr) {
       std::vector<std::string> names;
-      for (const auto& [known_name, unused] : known.items()) {
-        names.push_back(known_name);
+      for (const Setting& known : settings.all()) {
+        names.push_back(known.name);
       }
       const std::string nearest = nearest_name(name, names);
       throw UsageError(fmt::format("unknown option '{}'{}", quotable(given),
                                    nearest.empty() ? "" : ", did you mean " + nearest + "?"));
     }
     if (!value.is_none()) {
-      values[name] = to_setting(name, value);
+      values[name] = to_setting(*setting, value);
     }
   }
   settings.take_values(values);
@@ -120,9 +154,8 @@ Execution& take_execution(py::dict& options) {
   add_execution_settings(settings, chosen);
   const SettingValue defaults = settings.values();
   py::dict given;
-  for (const auto& [name, unused] : defaults.items()) {
-    std::string keyword = name;
-    std::replace(keyword.begin(), keyword.end(), '-', '_');
+  for (const Setting& setting : settings.all()) {
+    const std::string keyword = keyword_of(setting.name);
     if (options.contains(keyword.c_str())) {
       given[keyword.c_str()] = options.attr("pop")(keyword);
     }
@@ -139,6 +172,31 @@ Execution& take_execution(py::dict& options) {
     execution = new Execution(chosen);
   }
   return *execution;
+}
+
+py::list option_rows(const Settings& settings, ThreadOptions threads,
+                     const std::vector<std::string>& refused) {
+  ExecutionOptions execution;
+  Settings of_threads;
+  if (threads == ThreadOptions::kTaken) {
+    add_execution_settings(of_threads, execution);
+  }
+  py::list rows;
+  for (const Settings* const part : std::array<const Settings*, 2>{&settings, &of_threads}) {
+    for (const Setting& setting : part->all()) {
+      if (std::ranges::find(refused, setting.name) == refused.end()) {
+        rows.append(row_of(setting));
+      }
+    }
+  }
+  return rows;
+}
+
+void declare_rows(py::module_& module, const char* call, const std::function<py::list()>& rows) {
+  if (!py::hasattr(module, "call_options")) {
+    module.attr("call_options") = py::dict();
+  }
+  module.attr("call_options")[call] = py::cpp_function(rows);
 }
 
 SettingValue read_toml(const std::string& path) {

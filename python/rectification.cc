@@ -114,6 +114,9 @@ StereoCalibration rectified_calibration(const RectifiedPair& pair,
   return calibration;
 }
 
-void bind_rectification(py::module_& module) { module.def("rectify", &to_rectify); }
+void bind_rectification(py::module_& module) {
+  module.def("rectify", &to_rectify);
+  declare_options(module, "rectify", ThreadOptions::kTaken, add_white_level_setting);
+}
 
 }  // namespace vantage::python

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <mutex>
@@ -286,6 +287,28 @@ class FrameLoop {
   RemarkWarnings warnings_;
 };
 
+void add_sequence_settings(Settings& settings, SequenceJob& job) {
+  add_input_settings(settings, job);
+  settings.flag("rectified-pixels", job.rectified_pixels, "With unrectified: as for Matcher");
+  std::erase_if(add_save_setting(settings, job).words, [](const std::string& word) {
+    return std::ranges::any_of(kNotOfFrames, [&word](const auto& output) {
+      return output_names({output.first})[0] == word;
+    });
+  });
+  add_picture_settings(settings, job);
+  add_rig_scale_settings(settings, job.rig);
+  add_poses_setting(settings, job);
+  add_steadiness_settings(settings, job);
+  add_frames_setting(settings, job.frames, job.step_of_frames);
+  add_chunk_frames_setting(settings, job);
+  add_in_flight_setting(settings, job);
+  add_live_setting(settings, job);
+  settings.flag("keep-going", job.keep_going, "Leave out frames that fail; they are in skipped");
+  add_reference_setting(settings, job.sequence.match.reference);
+  add_match_settings(settings, job.sequence.match);
+  add_synthesis_settings(settings, job.sequence.synthesis);
+}
+
 /// Sequence of the package.
 class Sequence {
  public:
@@ -301,21 +324,7 @@ class Sequence {
     }
     opened_->execution = &take_execution(keywords);
     Settings settings;
-    add_input_settings(settings, job);
-    settings.flag("rectified-pixels", job.rectified_pixels, "");
-    add_save_setting(settings, job);
-    add_picture_settings(settings, job);
-    add_rig_scale_settings(settings, job.rig);
-    add_poses_setting(settings, job);
-    add_steadiness_settings(settings, job);
-    add_frames_setting(settings, job.frames, job.step_of_frames);
-    add_chunk_frames_setting(settings, job);
-    add_in_flight_setting(settings, job);
-    add_live_setting(settings, job);
-    settings.flag("keep-going", job.keep_going, "");
-    add_reference_setting(settings, job.sequence.match.reference);
-    add_match_settings(settings, job.sequence.match);
-    add_synthesis_settings(settings, job.sequence.synthesis);
+    add_sequence_settings(settings, job);
     set_options(settings, keywords);
     if (calibration_) {
       (is_unrectified ? job.unrectified : job.calibration) =
@@ -373,6 +382,8 @@ class Sequence {
 }  // namespace
 
 void bind_sequence(py::module_& module) {
+  declare_options(module, "Sequence", ThreadOptions::kTaken, add_sequence_settings,
+                  {"raw-video"});  // of streams
   py::class_<FrameLoop>(module, "FrameLoop")
       .def("next", &FrameLoop::next)
       .def("close", &FrameLoop::close)

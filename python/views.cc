@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/options/calibration_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/pair_source_settings.h"
 #include "engine/options/synthesis_settings.h"
@@ -31,6 +32,15 @@ struct ViewSetup {
   std::optional<double> white_level;
   RowMode rows = RowMode::kAuto;
 };
+
+void add_view_settings(Settings& settings, ViewSetup& setup) {
+  add_wanted_views(settings, setup.views);
+  add_synthesis_settings(settings, setup.synthesis);
+  add_kept_outline_setting(settings, setup.rectification);
+  add_match_settings(settings, setup.match);
+  add_white_level_setting(settings, setup.white_level);
+  add_rows_setting(settings, setup.rows);
+}
 
 void rectify_pair(const StereoCalibration& calibration, const RectificationOptions& options,
                   PairWithMaps& pair, Execution& execution) {
@@ -93,12 +103,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
   ViewSetup setup;
   Execution& execution = take_execution(keywords);
   Settings settings;
-  add_wanted_views(settings, setup.views);
-  add_synthesis_settings(settings, setup.synthesis);
-  settings.number("kept-outline", setup.rectification.kept_outline, "SHARE", "");
-  add_match_settings(settings, setup.match);
-  add_white_level_setting(settings, setup.white_level);
-  add_rows_setting(settings, setup.rows);
+  add_view_settings(settings, setup);
   set_options(settings, keywords);
   setup.synthesis.validate();
   setup.rectification.validate();
@@ -150,6 +155,9 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
 
 }  // namespace
 
-void bind_views(py::module_& module) { module.def("synthesize", &synthesize); }
+void bind_views(py::module_& module) {
+  module.def("synthesize", &synthesize);
+  declare_options(module, "synthesize", ThreadOptions::kTaken, add_view_settings);
+}
 
 }  // namespace vantage::python

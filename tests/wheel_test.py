@@ -93,6 +93,8 @@ class WheelTest(unittest.TestCase):
         run(PYTHON, "-m", "venv", environment)
         run(environment / "bin/pip", "install", "--no-index", "--no-deps", "-q", self.wheel)
         [packages] = environment.glob("lib/python3*/site-packages")
+        typed = {file.name for file in (packages / "vantage").iterdir()}
+        self.assertLessEqual({"__init__.pyi", "_vantage.pyi", "opencv.pyi", "py.typed"}, typed)
         numpy = run(PYTHON, "-c", "import numpy; print(numpy.__path__[0])").strip()
         (packages / "numpy").symlink_to(numpy)
         with_build = ["env", "-i", f"PYTHONPATH={BUILD / 'python'}", PYTHON, "-c"]

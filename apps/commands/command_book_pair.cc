@@ -35,6 +35,8 @@ void add_pair_settings(Settings& settings, BookPairJob& job) {
     names += (names.empty() ? "" : "|") + std::string(name);
   }
   Setting& pattern = settings.add("pattern", names, "Texture and shapes");
+  pattern.kind = ValueKind::kWord;
+  pattern.words = {kBookPairNames.begin(), kBookPairNames.end()};
   pattern.set = [&pair, names](const SettingValue& value) {
     for (const std::string_view name : kBookPairNames) {
       if (value == name) {

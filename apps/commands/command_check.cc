@@ -116,9 +116,9 @@ std::string given_options(const Settings& settings, bool for_one_pair) {
         !setting.positional && settings.is_set(setting.name)) {
       const SettingValue value = setting.get();
       text += " --" + setting.name;
-      text += setting.flag        ? ""
-              : value.is_string() ? "=" + shell_word(value.get<std::string>())
-                                  : "=" + shell_word(value.dump());
+      text += setting.kind == ValueKind::kTruth ? ""
+              : value.is_string()               ? "=" + shell_word(value.get<std::string>())
+                                                : "=" + shell_word(value.dump());
     }
   }
   return text;

@@ -26,7 +26,7 @@ void add_file_settings(Settings& settings, SceneBuildJob& job) {
   add_overwrite_setting(settings, job.overwrite);
   Setting& copy =
       settings.add("copy-images", "", "Copy the images into the folder, so that it can be moved");
-  copy.flag = true;
+  copy.kind = ValueKind::kTruth;
   copy.set = [&job](const SettingValue& value) { job.copy_images = to_truth(value); };
   copy.get = [&job] { return job.copy_images; };
 }

@@ -44,7 +44,7 @@ void add_row_settings(Settings& settings, RowSettings& rows) {
 
 void add_rectification_check_setting(Settings& settings, bool& wanted, const char* text) {
   Setting& setting = settings.add("no-rectification-check", "", text);
-  setting.flag = true;
+  setting.kind = ValueKind::kTruth;
   setting.changes_results = false;  // rows do
   setting.set = [&wanted](const SettingValue& value) { wanted = !to_truth(value); };
   setting.get = [&wanted] { return !wanted; };

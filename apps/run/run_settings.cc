@@ -55,7 +55,7 @@ void add_output_settings(Settings& settings, RunJob& job) {
       "Video on standard output: y4m (yuv420p, depth as mono16), or rawvideo (rgb24, depth as "
       "gray16le)");
   Setting& no_sound = settings.add("no-sound", "", "Do not copy the sound of the input");
-  no_sound.flag = true;
+  no_sound.kind = ValueKind::kTruth;
   no_sound.set = [&job](const SettingValue& value) { job.sequence.sound = !to_truth(value); };
   no_sound.get = [&job] { return !job.sequence.sound; };
 }

@@ -1,23 +1,11 @@
 #include "apps/settings/option_reference.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 
 #include "engine/combinations/combination_texts.h"
 
 namespace vantage::apps {
-namespace {
-
-/// Whether a placeholder lists names to choose from ("fast|balanced") rather than describing a
-/// value ("MIN:MAX|auto").
-bool lists_choices(const std::string& value_name) {
-  return value_name.find('|') != std::string::npos &&
-         std::ranges::none_of(value_name,
-                              [](unsigned char letter) { return std::isupper(letter) != 0; });
-}
-
-}  // namespace
 
 SettingValue option_reference(const Setting& setting, bool is_common) {
   SettingValue entry = {{"name", setting.name},
@@ -25,7 +13,7 @@ SettingValue option_reference(const Setting& setting, bool is_common) {
                         {"help", setting.help},
                         {"positional", setting.positional},
                         {"required", setting.required},
-                        {"flag", setting.flag},
+                        {"flag", setting.kind == ValueKind::kTruth},
                         {"list", setting.list},
                         {"common", is_common},
                         {"path", setting.path != PathRole::kNone}};
@@ -35,8 +23,8 @@ SettingValue option_reference(const Setting& setting, bool is_common) {
   if (!setting.value_name.empty()) {
     entry["value"] = setting.value_name;
   }
-  if (lists_choices(setting.value_name)) {
-    entry["choices"] = split(setting.value_name, '|');
+  if (!setting.words.empty()) {
+    entry["choices"] = setting.words;
   }
   const SettingValue value = setting.get();
   if (!value.is_null() && !value.is_boolean() && !(value.is_array() && value.empty())) {

@@ -9,10 +9,10 @@
 namespace vantage::apps {
 
 /// An option as JSON, for programs that write manual pages, completion or forms: `name`, `group`,
-/// `help`, and where they apply `short_name`, `value` (placeholder), `choices`,
-/// `default` and, in command_reference(), `not_with`; the
-/// truths `positional`, `required`, `flag`, `list` (may be given several times), `path` and
-/// `common` (in the short help).
+/// `help`, and where they apply `short_name`, `value` (placeholder), `choices`
+/// (the words that a value can be), `default` and, in command_reference(), `not_with`; the truths
+/// `positional`, `required`, `flag`, `list` (may be given several times), `path` and `common` (in
+/// the short help).
 SettingValue option_reference(const Setting& setting, bool is_common);
 
 /// The other options of a command that a setting does not go with, as users write them.

@@ -60,7 +60,7 @@ CLI::Option* add_option(CLI::App& app, const Setting& setting) {
       wrapped(is_long(setting) ? fmt::format("{}. NAME: {}", setting.help,
                                              fmt::join(split(setting.value_name, '|'), ", "))
                                : setting.help);
-  if (setting.flag) {
+  if (setting.kind == ValueKind::kTruth) {
     option = app.add_flag(option_names(setting), help);
   } else {
     // CLI11 only collects the texts; they are applied after the configuration file.
@@ -120,7 +120,9 @@ void append_general_options(const CLI::App& app, const std::vector<CLI::Option*>
     setting.value_name = option->get_type_name();
     setting.help = option->get_description();
     setting.group = option->get_group();
-    setting.flag = option->get_items_expected_max() == 0;
+    if (option->get_items_expected_max() == 0) {
+      setting.kind = ValueKind::kTruth;
+    }
     setting.get = [] { return SettingValue(); };
     reference.push_back(option_reference(setting, true));
   }

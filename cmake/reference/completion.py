@@ -12,15 +12,12 @@ def option_words(command):
 
 
 def words_that_start_a_value(command):
-    """Options that take a value, with the names to choose from; none where it is free."""
+    """Options that take a value, with the words that are known."""
     for option in command["options"]:
         if not option["positional"] and not option["flag"]:
             names = ["--" + option["name"]]
             names += ["-" + option["short_name"]] if "short_name" in option else []
-            choices = option.get("choices", [])
-            if "auto" in str(option.get("default", "")) and choices:
-                choices = [*choices, "auto"]
-            yield names, list(dict.fromkeys(choices))
+            yield names, option.get("choices", [])
 
 
 BASH = r"""# bash completion of vantage. Generated from the option table of the program.

@@ -33,6 +33,7 @@ void add_stereo_views_setting(Settings& settings, std::array<double, 2>& views_x
   Setting& setting = settings.add("stereo-views", "XL,XR",
                                   "Positions of the two views of the stereo output, in baselines; "
                                   "0,1: the photographs themselves");
+  setting.kind = ValueKind::kPoint;
   setting.set = [&views_x](const SettingValue& value) {
     views_x = from_parts(
         value, ',', 2, "two positions on the baseline such as 0.25,0.75", [](const auto& parts) {
@@ -158,9 +159,14 @@ void add_input_settings(Settings& settings, SequenceJob& job) {
   add_sequence_rows_setting(settings, job);
 }
 
-void add_save_setting(Settings& settings, SequenceJob& job) {
+Setting& add_save_setting(Settings& settings, SequenceJob& job) {
   Setting& save = settings.add(
       "save", "LIST", "Outputs per frame: " + known_outputs() + "; auto: disparity and views");
+  save.kind = ValueKind::kWord;
+  save.words = {std::string(kAutomatic)};
+  for (const auto& [name, output] : sequence_output_names()) {
+    save.words.emplace_back(name);
+  }
   save.list = true;
   save.set = [&job](const SettingValue& value) {
     const auto members = to_list(value);
@@ -171,6 +177,7 @@ void add_save_setting(Settings& settings, SequenceJob& job) {
     }
   };
   save.get = [&job] { return job.save ? output_names(*job.save) : SettingValue(kAutomatic); };
+  return save;
 }
 
 void add_picture_settings(Settings& settings, SequenceJob& job) {

@@ -60,7 +60,7 @@ void add_sequence_rows_setting(Settings& settings, SequenceJob& job);
 // Options of it. The first has a group of its own, as has add_steadiness_settings(); the others go
 // to the present group.
 void add_input_settings(Settings& settings, SequenceJob& job);
-void add_save_setting(Settings& settings, SequenceJob& job);
+Setting& add_save_setting(Settings& settings, SequenceJob& job);
 /// New views and the stereo output.
 void add_picture_settings(Settings& settings, SequenceJob& job);
 void add_poses_setting(Settings& settings, SequenceJob& job);

@@ -68,6 +68,7 @@ void add_frame_step_setting(Settings& settings, FrameStep& every) {
       settings.add("every", "N|Ts",
                    "Take every N-th frame (N+P: from frame P on) or a frame every T seconds, such "
                    "as 4s. Results are numbered 0, 1, 2 …; videos keep the duration of the input");
+  setting.kind = ValueKind::kIntegerOrText;
   setting.set = [&every](const SettingValue& value) { every = to_frame_step(value); };
   setting.get = [&every] { return to_text(every); };
 }
@@ -78,6 +79,7 @@ void add_frames_setting(Settings& settings, std::optional<FrameRange>& frames,
       settings.add("frames", "A-B[:N]",
                    "Process frames A to B of the input only, counted from 0; with :N only A, A + "
                    "N, A + 2 N …");
+  setting.words = {"all"};
   setting.set = [&frames, &step](const SettingValue& value) {
     frames.reset();
     step.reset();

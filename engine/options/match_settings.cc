@@ -47,6 +47,8 @@ void add_part_settings(Settings& settings, MatchOptions& options) {
       "roi", "X,Y,W,H",
       "Match only this rectangle of the left image (with several images: of the reference): first "
       "column and row, width and height; pixels outside are unknown. none: the whole image");
+  roi.kind = ValueKind::kRectangle;
+  roi.words = {"none"};
   roi.set = [&options](const SettingValue& value) {
     constexpr std::string_view kExpected = "X,Y,W,H in whole pixels, such as 100,50,640,480";
     options.roi.reset();
@@ -74,6 +76,8 @@ void add_noise_setting(Settings& settings, MatchOptions& options) {
       "grey "
       "levels, 0 to 64; none: images are compared as they are; auto: with a preset, noise and "
       "traces of lossy compression are looked for in each pair, clean images stay as they are");
+  noise.kind = ValueKind::kNumber;
+  noise.words = {"auto", "none"};
   noise.set = [&options](const SettingValue& value) {
     if (is_word(value, "auto")) {
       options.noise.reset();
@@ -131,6 +135,8 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
       settings.add("disparities", "MIN:MAX|auto",
                    "Search range x_left - x_right in whole pixels, ends included; auto: estimated "
                    "from the pair, in sequences from up to 16 pairs");
+  disparities.kind = ValueKind::kRange;
+  disparities.words = {"auto"};
   disparities.set = [&options](const SettingValue& value) {
     options.disparities_auto = is_word(value, "auto");
     if (!options.disparities_auto) {
@@ -145,6 +151,8 @@ void add_match_settings(Settings& settings, MatchOptions& options) {
       "disparities-y", "MIN:MAX|auto",
       "Also search vertical disparities, y_left - y_right, for pairs that are not rectified; auto: "
       "estimated from the pair; none: rows only");
+  disparities_y.kind = ValueKind::kRange;
+  disparities_y.words = {"auto", "none"};
   disparities_y.set = [&options](const SettingValue& value) {
     options.disparities_y_auto = is_word(value, "auto");
     if (is_word(value, "none")) {
@@ -177,6 +185,7 @@ Setting& add_rows_setting(Settings& settings, RowMode& rows) {
 
 void add_baselines_setting(Settings& settings, std::vector<double>& baselines, std::string help) {
   Setting& setting = settings.add("baselines", "B1,B2,...", std::move(help));
+  setting.kind = ValueKind::kNumbers;
   setting.set = [&baselines](const SettingValue& value) {
     std::vector<double> numbers;
     for (const SettingValue& member : to_list(value)) {

@@ -19,6 +19,7 @@ void add_raw_video_setting(Settings& settings, std::optional<RawVideoShape>& sha
                    "Streams are rawvideo of this size, in one of FFmpeg's pixel formats (default "
                    "rgb24), with the frame rate of --fps; of a camera its mode; none: y4m, or a "
                    "container that can be streamed");
+  setting.words = {"none"};
   setting.set = [&shape](const SettingValue& value) {
     const std::string text = to_text(value);
     if (text == "none") {

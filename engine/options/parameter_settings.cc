@@ -96,6 +96,11 @@ Setting& add_setting(Settings& settings, const OptionText& text, const std::stri
     return settings.choice(name, field, names_of(T{}), help);
   } else {
     Setting& setting = settings.add(name, std::string(text.value_name), help);
+    setting.kind = std::is_same_v<T, int> ? ValueKind::kInteger : ValueKind::kNumber;
+    setting.words = {"auto"};
+    if (!word_of(text).empty()) {
+      setting.words.emplace_back(word_of(text));
+    }
     setting.set = [&field, &text](const SettingValue& value) {
       if (is_word(value, "auto")) {
         field.reset();

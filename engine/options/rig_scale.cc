@@ -14,6 +14,8 @@ void add_principal_point(Settings& settings, std::optional<std::array<double, 2>
   Setting& setting = settings.add("principal-point", "CX,CY",
                                   "In place of a calibration: principal point of the left image in "
                                   "pixels; auto: the middle of the image");
+  setting.kind = ValueKind::kPoint;
+  setting.words = {kAutomatic};
   setting.set = [&point](const SettingValue& value) {
     if (value == kAutomatic) {
       point.reset();

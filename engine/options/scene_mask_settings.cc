@@ -22,6 +22,8 @@ void add_scene_mask_settings(Settings& settings, SceneMaskOptions& masks, bool p
       settings.add("no-data", "COLOUR",
                    "Pixels of this value, a grey level or R,G,B as stored, show no scene; none: "
                    "there is no such value");
+  no_data.kind = ValueKind::kNumbers;
+  no_data.words = {"none"};
   no_data.set = [&masks](const SettingValue& value) {
     masks.no_data.clear();
     if (is_word(value, "none")) {

@@ -24,6 +24,7 @@ void bind_optional(Setting& setting, std::optional<T>& field, const std::string&
     }
     field = parse(value);
   };
+  setting.words = {unset_name};
   setting.get = [&field, unset_name]() -> SettingValue {
     return field ? SettingValue(*field) : SettingValue(unset_name);
   };
@@ -33,7 +34,7 @@ void bind_optional(Setting& setting, std::optional<T>& field, const std::string&
 
 Setting& Settings::flag(std::string name, bool& field, std::string help) {
   Setting& setting = add(std::move(name), "", std::move(help));
-  setting.flag = true;
+  setting.kind = ValueKind::kTruth;
   setting.set = [&field](const SettingValue& value) { field = to_truth(value); };
   setting.get = [&field] { return field; };
   return setting;
@@ -41,6 +42,7 @@ Setting& Settings::flag(std::string name, bool& field, std::string help) {
 
 Setting& Settings::integer(std::string name, int& field, std::string value_name, std::string help) {
   Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  setting.kind = ValueKind::kInteger;
   setting.set = [&field](const SettingValue& value) { field = to_integer(value); };
   setting.get = [&field] { return field; };
   return setting;
@@ -49,6 +51,7 @@ Setting& Settings::integer(std::string name, int& field, std::string value_name,
 Setting& Settings::number(std::string name, double& field, std::string value_name,
                           std::string help) {
   Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  setting.kind = ValueKind::kNumber;
   setting.set = [&field](const SettingValue& value) { field = to_number(value); };
   setting.get = [&field] { return field; };
   return setting;
@@ -57,6 +60,7 @@ Setting& Settings::number(std::string name, double& field, std::string value_nam
 Setting& Settings::integer(std::string name, std::optional<int>& field, std::string value_name,
                            std::string help, const std::string& unset_name) {
   Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  setting.kind = ValueKind::kInteger;
   bind_optional(setting, field, unset_name, to_integer);
   return setting;
 }
@@ -64,6 +68,7 @@ Setting& Settings::integer(std::string name, std::optional<int>& field, std::str
 Setting& Settings::number(std::string name, std::optional<double>& field, std::string value_name,
                           std::string help, const std::string& unset_name) {
   Setting& setting = add(std::move(name), std::move(value_name), std::move(help));
+  setting.kind = ValueKind::kNumber;
   bind_optional(setting, field, unset_name, to_number);
   return setting;
 }

@@ -22,6 +22,22 @@ enum class PathRole {
   kOther   ///< the command writes it or passes it to another program
 };
 
+/// What the values of a setting are, beside its words.
+enum class ValueKind {
+  kText,
+  kWord,   ///< its words only
+  kTruth,  ///< a flag
+  kInteger,
+  kNumber,
+  kNumbers,        ///< one or more, with commas between them in a text
+  kIntegerOrText,  ///< 10 or 10+5
+  kNumberOrText,   ///< 0.5 or 0.5,-0.2
+  kRange,          ///< two whole numbers MIN:MAX
+  kPoint,          ///< two numbers X,Y
+  kRectangle,      ///< four whole numbers X,Y,W,H
+  kPoses           ///< the name of a file, or an array of objects
+};
+
 /// One setting: an option of the command line, a keyword argument, a key of a settings file and an
 /// entry of the report, bound to a field of an option struct.
 struct Setting {
@@ -32,9 +48,10 @@ struct Setting {
   char short_name = 0;
   bool positional = false;
   bool required = false;
-  bool flag = false;
-  bool list = false;            ///< may be given several times; an array in TOML
-  bool changes_results = true;  ///< false: it affects how work is done, not the results
+  ValueKind kind = ValueKind::kText;
+  std::vector<std::string> words;  ///< texts that are values whatever the kind, such as auto
+  bool list = false;               ///< may be given several times; an array in TOML
+  bool changes_results = true;     ///< false: it affects how work is done, not the results
   PathRole path = PathRole::kNone;
   /// Sets a value, or a text (list: texts) that is read as one. Throws UsageError "is …, expected
   /// …" without the name.
@@ -181,6 +198,8 @@ Setting& Settings::choice(std::string name, std::optional<Enum>& field,
   Setting& setting = add_choice<Enum>(
       std::move(name), std::move(names), std::move(help), [&field](Enum value) { field = value; },
       [&field] { return field; });
+  std::erase(setting.words, unset_name);  // which may be one of the names
+  setting.words.push_back(unset_name);
   const auto set_name = std::move(setting.set);
   const auto get_name = std::move(setting.get);
   setting.set = [&field, set_name, unset_name](const SettingValue& value) {
@@ -202,10 +221,14 @@ Setting& Settings::add_choice(std::string name,
                               std::string help, std::function<void(Enum)> assign,
                               std::function<std::optional<Enum>()> present) {
   std::string value_name;
+  std::vector<std::string> words;
   for (const auto& [text, value] : names) {
     value_name += (value_name.empty() ? "" : "|") + std::string(text);
+    words.emplace_back(text);
   }
   Setting& setting = add(std::move(name), value_name, std::move(help));
+  setting.kind = ValueKind::kWord;
+  setting.words = std::move(words);
   setting.set = [assign, names, value_name](const SettingValue& value) {
     for (const auto& [text, choice] : names) {
       if (value.is_string() && value.get_ref<const std::string&>() == text) {

@@ -54,7 +54,7 @@ void add_surface_settings(Settings& settings, SynthesisOptions& options) {
       "Neighbouring pixels belong to one surface if their disparities differ by at most PX");
   Setting& no_matching =
       settings.add("no-intensity-matching", "", "Do not match the brightness of the images");
-  no_matching.flag = true;
+  no_matching.kind = ValueKind::kTruth;
   no_matching.set = [&options](const SettingValue& value) {
     options.match_intensities = !to_truth(value);
   };

@@ -40,6 +40,8 @@ void add_volume_settings(Settings& settings, VolumeOutput& output) {
   Setting& rows = settings.add("volume-rows", "FIRST:LAST",
                                "With --volume: write these rows of the level only, both ends "
                                "included; all: the whole volume");
+  rows.kind = ValueKind::kRange;
+  rows.words = {kAllRows};
   rows.set = [&output](const SettingValue& value) {
     if (value == kAllRows) {
       output.rows.reset();

@@ -56,6 +56,7 @@ std::vector<ViewPose> poses_of_sweep(const Sweep& sweep) {
 
 void add_pose_list(Settings& settings, std::string name, PoseList& list, std::string help) {
   Setting& setting = settings.add(std::move(name), "FILE", std::move(help));
+  setting.kind = ValueKind::kPoses;
   setting.path = PathRole::kInput;
   // Results depend on the content of the file, not on its name.
   setting.changes_results = false;
@@ -99,6 +100,7 @@ void add_view_setting(Settings& settings, std::vector<BaselinePosition>& views) 
   Setting& view = settings.add("view", "XS[,YS]",
                                "Position of a new view in baselines: 0 left camera, 1 right "
                                "camera; YS is positive downwards; repeatable");
+  view.kind = ValueKind::kNumberOrText;
   view.list = true;
   view.set = [&views](const SettingValue& value) {
     std::vector<BaselinePosition> positions;

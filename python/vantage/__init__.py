@@ -18,11 +18,12 @@ import os as _os
 import threading as _threading
 import weakref as _weakref
 from dataclasses import dataclass as _dataclass
+from inspect import cleandoc as _cleandoc
 from typing import TYPE_CHECKING as _TYPE_CHECKING
 
 import numpy as _np
 
-from vantage import _vantage
+from vantage import _option_texts, _vantage
 from vantage._vantage import (Calibration, Error, MatchResult, Mesh, PointCloud, UsageError,
                               __version__)
 
@@ -45,15 +46,14 @@ if _TYPE_CHECKING:  # at run time they would be names of this module
 
     _Path = str | os.PathLike[str]
     _Image = NDArray[np.uint8] | NDArray[np.uint16] | NDArray[np.float32]
-    _Range = tuple[int, int] | str
     _Source = _Path | _Sequence[_Image | _Path] | None
     _Pairs = _Path | Iterable[tuple[_Image | _Path, _Image | _Path]] | None
     _Rig = Calibration | _Path | None
     _Map = NDArray[np.float32] | NDArray[np.float64]
     _Mask = NDArray[np.bool_] | NDArray[np.uint8]
-    _Preset = Literal["realtime", "balanced", "quality"] | None
     _Numbers = NDArray[Any] | _Sequence[Any]
     _Position = float | tuple[float, float] | Mapping[str, Any]
+    _Option = Any  # stands for the type of an option in the stubs, which are made of this file
 
 _loops = _weakref.WeakSet()
 
@@ -64,7 +64,6 @@ class Matcher:
     preset: "realtime", "balanced" or "quality"; None: "balanced", unless options choose a
     method (method, aggregate, disparities_y).
     disparities: (MIN, MAX) or "MIN:MAX" in pixels, ends included; "auto": estimated for each pair.
-    options: those of `vantage match` that concern matching, reference and threads.
     unrectified: Calibration or a path, of photographs that are not rectified: epipolar lines are
     searched instead of rows. Maps are on the pixels of the photographs, disparities those of the
     rectified pair; rectified_pixels=True brings maps to the rectified images, for synthesize() and
@@ -73,7 +72,7 @@ class Matcher:
     Several threads may use one matcher at a time. Processes get it by its options (pickle).
     """
 
-    def __init__(self, preset: _Preset = None, disparities: _Range = "auto", *,
+    def __init__(self, preset: _Option = None, disparities: _Option = "auto", *,
                  unrectified: _Rig = None, rectified_pixels: bool = False, **options: Any) -> None:
         self._set(_calibration_of(unrectified), bool(rectified_pixels),
                   {"preset": preset, "disparities": disparities, **options})
@@ -163,9 +162,18 @@ class Volume:
     level: of the coarse-to-fine search. first_row: the row of that level that values begin with.
     """
 
-    def __init__(self, values, disparities, step, disparities_y, content, level, first_row):
-        self.values: NDArray[np.float32] = values
-        self.disparities: NDArray[np.float64] = disparities[0] + step * _np.arange(values.shape[-1])
+    values: NDArray[np.float32]
+    disparities: NDArray[np.float64]
+    disparities_y: NDArray[np.int_] | None
+    content: str
+    level: int
+    first_row: int
+
+    def __init__(self, values: NDArray[np.float32], disparities: tuple[int, int], step: float,
+                 disparities_y: tuple[int, int] | None, content: str, level: int,
+                 first_row: int) -> None:
+        self.values = values
+        self.disparities = disparities[0] + step * _np.arange(values.shape[-1])
         self.disparities_y = (
             None if disparities_y is None else _np.arange(disparities_y[0], disparities_y[1] + 1))
         self.content = content
@@ -204,7 +212,7 @@ def rectify(left: _Image, right: _Image, calibration: _Rig = None, *, kept_outli
     """Rectifies a pair; without a calibration (or the path of one) the cameras are estimated from
     the images, up to scale: the baseline then has length 1.
 
-    options: threads, white_level. Returns RectifiedImages. Raises Error where the images show too little.
+    Returns RectifiedImages. Raises Error where the images show too little.
     """
     return RectifiedImages(*_vantage.rectify(
         left, right, _calibration_of(calibration), float(kept_outline), bool(bgr), options))
@@ -220,8 +228,7 @@ def synthesize(left: _Image, right: _Image,
     view: a position in baselines (0: left camera, 1: right camera) or (x, y), or a camera as a dict
     of K, R and t, which needs a calibration; a list of these, or an array of positions, gives a
     list. Default 0.5.
-    options: those of `vantage synth` instead of view (sweep, orbit, pose, path), and how views are
-    made (holes, look_at, …); without maps also those of Matcher.
+    sweep, orbit, pose or path take the place of view. Options of matching count without maps.
     disparity, right_disparity: both maps of the rectified pair; None: they are computed.
     calibration: Calibration or a path; images that are not rectified are rectified first.
     """
@@ -246,16 +253,16 @@ def synthesize(left: _Image, right: _Image,
 
 
 def reproject(disparity: _Map, calibration: Calibration | _Path | _Numbers, *,
-              reference: Literal["left", "right"] = "left", **options: Any) -> NDArray[np.float32]:
+              reference: _Option = "left", **options: Any) -> NDArray[np.float32]:
     """Points of a disparity map: float32, HxWx3, in the unit of the calibration.
 
     X is to the right, Y down and Z ahead of the rectified left camera. NaN where the disparity is
     unknown or at infinity or beyond.
 
     disparity: float32 or float64, HxW. calibration: Calibration of rectified images (or the path of
-    one), or OpenCV's 4x4 matrix Q. reference: "left" or "right", the image of the map. options:
-    threads. Raises UsageError for other arrays and matrices, Error for other calibrations.
-    MatchResult.cloud() makes points in metres with their colours.
+    one), or OpenCV's 4x4 matrix Q. reference: "left" or "right", the image of the map. Raises
+    UsageError for other arrays and matrices, Error for other calibrations. MatchResult.cloud() makes
+    points in metres with their colours.
     """
     if isinstance(calibration, (_np.ndarray, list, tuple)):
         calibration = Calibration.from_depth_matrix(calibration)
@@ -269,25 +276,21 @@ def depth(disparity: _Map, calibration: _Rig = None, **options: Any) -> NDArray[
     """Depths of a disparity map in metres: float32, HxW; NaN: unknown, or beyond max_depth.
 
     disparity: float32 or float64, HxW. calibration: Calibration of rectified images (or the path of
-    one). Instead, or for one without a scale: focal_length (pixels) with baseline (metres), doffs,
-    calibration_unit ("m", "cm", "mm"). options: these, max_depth (metres), reference, threads.
+    one). Instead: focal_length with baseline; for one without a scale: baseline or calibration_unit.
     Raises Error for a calibration without a scale. MatchResult.depth() does the same.
     """
     return _vantage.depth(disparity, _calibration_of(calibration), options)
 
 
 def disparity(depth: _Map, calibration: _Rig = None, **options: Any) -> NDArray[np.float32]:
-    """The opposite of depth(), with its options but max_depth; NaN where no depth is known."""
+    """The opposite of depth(); NaN where no depth is known."""
     return _vantage.disparity(depth, _calibration_of(calibration), options)
 
 
 def depth_resolution(disparity: _Map, calibration: _Rig = None,
                      **options: Any) -> NDArray[np.float32]:
     """Distance from each depth to the next distinguishable one: float32, HxW, in metres,
-    or in the calibration's unit where its length is not known.
-
-    options: disparity_resolution, the smallest distinguishable difference of disparities (default
-    0.1 pixels), and those of depth() but max_depth.
+    or in the calibration's unit where its length is not known. Arguments as of depth().
     """
     return _vantage.depth_resolution(disparity, _calibration_of(calibration), options)
 
@@ -300,10 +303,7 @@ def cloud(disparity: _Map, image: _Image, calibration: _Rig = None, *,
 
     disparity: float32 or float64, HxW. image: the map's image, for colours. unmatched: bool or
     uint8, HxW: filled pixels, which are left out. confidence: float32, HxW, for
-    cloud_min_confidence and cloud_confidence.
-    options: max_depth, cloud_step, cloud_min_confidence, cloud_confidence, cloud_filled,
-    cloud_outlines, cloud_gradient_limit, reference, principal_point ((cx, cy), in place of a
-    calibration), and those of depth(). Raises Error where no point is left.
+    cloud_min_confidence and cloud_confidence. Raises Error where no point is left.
     """
     return _vantage.cloud(disparity, image, _calibration_of(calibration), unmatched, confidence,
                           bool(bgr), options)
@@ -357,21 +357,15 @@ class Frame:
 class Sequence:
     """The frames of a run, matched ahead of the loop that takes them: for frame in Sequence(...).
 
-    left, right, options: inputs as for `vantage run` (left and right, more and baselines; stereo and
-    packing; pairs; sequence and step; offset, every), those of Matcher, and those that concern
-    frames: temporal_prior, temporal_threshold, reuse, chunk_frames, search_range="shot",
-    preview_range="shot", intensity_fit="shot"; view, view_path, pose, path,
-    look_at and how views are made; stereo_views, stereo_packing; keep_going.
-    disparities="auto" is the range of the whole sequence.
+    Inputs are those of `vantage run`: left and right, with more and baselines; or one of stereo,
+    pairs and sequence. preset, disparities: as of Matcher; "auto" is the range of all frames.
     save: what to compute of each frame, by the names of `vantage run --save`; default the maps of
     the reference, and the views if there are any. Other maps are computed when they are asked for,
     unless they depend on other frames.
     frames: range or slice of the pairs to go through, increasing, or "A-B" or "A-B:N" as for run;
     default all.
     calibration: Calibration or a path, to rectify the pairs first. unrectified, rectified_pixels:
-    instead, as for Matcher. baseline, focal_length, doffs, principal_point, calibration_unit: of
-    results in metres, as for `vantage run`. poses: file of a trajectory.
-    in_flight: frames that are computed ahead or wait, 1 to 64; default: threads + 2.
+    instead, as for Matcher.
 
     pairs: the path of a list, or an iterable of (left, right), each an array or the path of an
     image: a camera, a queue, a generator. A thread of its own goes through it and copies the
@@ -391,10 +385,13 @@ class Sequence:
     After a loop, skipped is a list of (index, reason) of the frames left out.
     """
 
+    skipped: list[tuple[int, str]]
+    dropped: int
+
     def __init__(self, left: _Source = None, right: _Source = None, *, pairs: _Pairs = None,
                  frames: range | slice | str | None = None, calibration: _Rig = None,
-                 unrectified: _Rig = None, rectified_pixels: bool = False, preset: _Preset = None,
-                 disparities: _Range = "auto", save: str | _Sequence[str] | None = None,
+                 unrectified: _Rig = None, rectified_pixels: bool = False, preset: _Option = None,
+                 disparities: _Option = "auto", save: _Option = None,
                  live: bool = False, bgr: bool = False, **options: Any) -> None:
         self._supplied = _supplied_pairs(left, right, pairs)
         if self._supplied is not None:
@@ -529,8 +526,7 @@ def read_image(path: _Path, *, bgr: bool = False, **options: Any) -> NDArray[Any
     """Reads PNG, JPEG, TIFF, JPEG 2000, PNM, BMP, WebP, EXR or PFM: uint8, uint16 or float32.
 
     "scan.tif#2" is page 2 of a TIFF, "photo.mpo#1" the right view of an MPO or JPS, counted from 0.
-    The image is turned as its EXIF orientation says. options: orientation="stored" leaves it as it
-    is, band=N reads one band, counted from 1. Floats are NaN where the file has no data.
+    Floats are NaN where the file has no data.
     """
     return _vantage.read_image(path, bool(bgr), options)
 
@@ -585,6 +581,10 @@ def colours(disparity: _Map, limits: tuple[float, float] | None = None) -> NDArr
     limits: disparities of the first and the last colour; default: from the map.
     """
     return _vantage.colours(disparity, limits)
+
+
+for _name, _text in _option_texts.TEXTS.items():
+    globals()[_name].__doc__ = f"{_cleandoc(globals()[_name].__doc__)}\n\n{_text}\n"
 
 
 def _require_type(name, value, expected):

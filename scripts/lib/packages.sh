@@ -19,10 +19,12 @@ readonly FUZZ_PACKAGES=(clang libclang-rt-14-dev libomp-dev)
 
 # What some tests need beside that; without these they are skipped.
 # shellcheck disable=SC2034
+readonly PYTHON_PACKAGES=(mypy python3-jedi python3-nbclient python3-ipykernel)
+# shellcheck disable=SC2034
 readonly WHEEL_PACKAGES=(patchelf python3-build python3-setuptools python3-venv python3-wheel)
 # shellcheck disable=SC2034
 readonly TEST_PACKAGES=(
-  slurmctld slurmd slurm-client munge xvfb xdotool "${WHEEL_PACKAGES[@]}"
+  slurmctld slurmd slurm-client munge xvfb xdotool "${WHEEL_PACKAGES[@]}" "${PYTHON_PACKAGES[@]}"
 )
 # shellcheck disable=SC2034
 readonly BROWSER_PACKAGES=(chromium)

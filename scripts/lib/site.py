@@ -6,7 +6,8 @@ usage: site.py stage REFERENCE_DIR GALLERY_DIR SOURCE_DIR    Markdown for mkdocs
 
 `stage` copies the documents under the site's names with their links adapted; a link to what is not
 on the site, such as a source file, becomes plain text. The commands' reference pages come from
-REFERENCE_DIR (cmake/reference), the gallery from GALLERY_DIR.
+REFERENCE_DIR (cmake/reference), the page of the Python module from beside it, the gallery from
+GALLERY_DIR.
 """
 import html.parser
 import os
@@ -20,7 +21,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGES = {"README.md": "about.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
          "perf/README.md": "benchmarks.md"}
 # Pages that are made for the site, as documents link to them → on the site.
-MADE_PAGES = {"docs/gallery.md": "gallery.md", "docs/commands/index.md": "commands/index.md"}
+MADE_PAGES = {"docs/gallery.md": "gallery.md", "docs/commands/index.md": "commands/index.md",
+              "docs/python-reference.md": "python-reference.md"}
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 
 
@@ -62,6 +64,7 @@ def stage(reference, gallery, out):
         else:
             shutil.copy(ROOT / source, file)
     shutil.copytree(reference, out / "commands")
+    shutil.copy(reference.parent / "python.md", out / "python-reference.md")
     shutil.copytree(gallery, out, dirs_exist_ok=True)
 
 

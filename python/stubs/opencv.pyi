@@ -1,4 +1,4 @@
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +11,15 @@ class StereoVantage:
         self, minDisparity: int = ..., numDisparities: int = ..., blockSize: int = ...,
         P1: int = ..., P2: int = ..., disp12MaxDiff: int = ..., preFilterCap: int = ...,
         uniquenessRatio: int = ..., speckleWindowSize: int = ..., speckleRange: int = ...,
-        mode: int = ..., *, preset: str | None = ..., **options: Any
+        mode: int = ..., *, preset: _Option = ..., **options: Any
     ) -> None: ...
     @staticmethod
-    def create(*arguments: Any, **options: Any) -> StereoVantage: ...
+    def create(
+        minDisparity: int = ..., numDisparities: int = ..., blockSize: int = ...,
+        P1: int = ..., P2: int = ..., disp12MaxDiff: int = ..., preFilterCap: int = ...,
+        uniquenessRatio: int = ..., speckleWindowSize: int = ..., speckleRange: int = ...,
+        mode: int = ..., *, preset: _Option = ..., **options: Any
+    ) -> StereoVantage: ...
     def compute(
         self, left: NDArray[np.uint8], right: NDArray[np.uint8],
         disparity: NDArray[np.int16] | None = ...
@@ -42,4 +47,9 @@ class StereoVantage:
     def getMode(self) -> int: ...
     def setMode(self, value: int) -> None: ...
 
-def StereoVantage_create(*arguments: Any, **options: Any) -> StereoVantage: ...
+def StereoVantage_create(
+    minDisparity: int = ..., numDisparities: int = ..., blockSize: int = ...,
+    P1: int = ..., P2: int = ..., disp12MaxDiff: int = ..., preFilterCap: int = ...,
+    uniquenessRatio: int = ..., speckleWindowSize: int = ..., speckleRange: int = ...,
+    mode: int = ..., *, preset: _Option = ..., **options: Any
+) -> StereoVantage: ...

@@ -1,8 +1,9 @@
 """What the bindings hold; `vantage` has the types of the rest beside its code."""
 
 import os
+from collections.abc import Mapping
 from collections.abc import Sequence as _Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
