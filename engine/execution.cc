@@ -40,9 +40,11 @@ void ExecutionOptions::validate() const {
 }
 
 int thread_count(const ExecutionOptions& options, const scheduler::Machine& machine) {
-  return options.executor == scheduler::ExecutorKind::kSerial
-             ? 1
-             : options.threads.value_or(machine.hardware_threads);
+  if (options.executor == scheduler::ExecutorKind::kSerial) {
+    return 1;
+  }
+  return std::min(options.threads.value_or(machine.hardware_threads),
+                  kMaxThreadsPerProcessor * machine.hardware_threads);
 }
 
 Execution::Execution(const ExecutionOptions& options) : options_(options) {

@@ -15,8 +15,8 @@ namespace vantage {
 
 /// How work is distributed over the machine. Results do not depend on it.
 struct ExecutionOptions {
-  std::optional<int> threads =
-      std::nullopt;  ///< 1..1024; default: the hardware threads available to this process
+  /// 1..1024, see thread_count(); default: the hardware threads available to this process.
+  std::optional<int> threads = std::nullopt;
   scheduler::ExecutorKind executor = scheduler::ExecutorKind::kTbb;
   /// Default: bind to nodes where the threads need more than one, else no binding.
   std::optional<scheduler::ThreadBinding> binding = std::nullopt;
@@ -36,6 +36,9 @@ struct ExecutionOptions {
   /// Throws UsageError naming the field, its value and its limit.
   void validate() const;
 };
+
+/// More threads than that for each processor only look for work: an Execution has no more.
+inline constexpr int kMaxThreadsPerProcessor = 16;
 
 /// Number of threads of an Execution with `options` on `machine`.
 int thread_count(const ExecutionOptions& options, const scheduler::Machine& machine);

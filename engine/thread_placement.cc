@@ -1,5 +1,7 @@
 #include "engine/thread_placement.h"
 
+#include <fmt/format.h>
+
 namespace vantage {
 
 scheduler::ThreadPlaces thread_places(const ExecutionOptions& options,
@@ -10,6 +12,20 @@ scheduler::ThreadPlaces thread_places(const ExecutionOptions& options,
   }
   return scheduler::place_threads(
       topology, threads, options.binding.value_or(scheduler::default_binding(topology, threads)));
+}
+
+std::vector<Remark> thread_remarks(const ExecutionOptions& options,
+                                   const scheduler::Machine& machine) {
+  const int asked = options.threads.value_or(1);
+  const int used = thread_count(options, machine);
+  if (options.executor == scheduler::ExecutorKind::kSerial || asked <= used) {
+    return {};
+  }
+  const int processors = machine.hardware_threads;
+  return {
+      {Remark::Kind::kNote, "threads",
+       fmt::format("`threads` {} for {} processor{}: {} are used, more would only look for work",
+                   asked, processors, processors == 1 ? "" : "s", used)}};
 }
 
 std::string_view name_of(scheduler::ThreadBinding binding) {

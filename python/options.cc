@@ -14,7 +14,9 @@
 #include "engine/options/execution_settings.h"
 #include "engine/options/nearest_name.h"
 #include "engine/quoted_text.h"
+#include "engine/thread_placement.h"
 #include "python/calls.h"
+#include "python/remark_warnings.h"
 
 namespace vantage::python {
 namespace py = pybind11;
@@ -171,6 +173,7 @@ Execution& take_execution(py::dict& options) {
   if (execution == nullptr) {
     execution = new Execution(chosen);
   }
+  RemarkWarnings().warn(thread_remarks(execution->options(), execution->machine()));
   return *execution;
 }
 

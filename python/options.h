@@ -17,7 +17,8 @@ namespace vantage::python {
 void set_options(Settings& settings, const pybind11::dict& options);
 
 /// Options of threads (`threads`, `executor`, …) taken out of `options`, and their execution: one
-/// for all who give the same, so that their threads are shared. It is never freed.
+/// for all who give the same, so that their threads are shared. It is never freed. Warns where it
+/// has fewer threads than asked for.
 Execution& take_execution(pybind11::dict& options);
 
 /// The keyword of an option.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <set>
 
 #include "apps/commands/commands.h"
 #include "apps/pages/profile_page.h"
@@ -19,6 +20,7 @@
 #include "engine/profiling/profile_figures.h"
 #include "engine/profiling/profile_json.h"
 #include "engine/simd.h"
+#include "engine/thread_placement.h"
 #include "scheduler/machine.h"
 
 namespace vantage::apps {
@@ -35,11 +37,12 @@ void check_files(const ProfileJob& job, const Settings& settings, const Profiled
   files.add_output(job.json, "--json", OutputKind::kText);
 }
 
-/// Fewest first.
+/// Fewest first, none twice.
 std::vector<int> thread_counts(const ProfileJob& job, const ProfiledCommand& command) {
   std::vector<int> counts = job.threads;
   const ExecutionOptions& execution = command.common().execution;
-  const int max = thread_count(execution, scheduler::detect_machine());
+  const scheduler::Machine machine = scheduler::detect_machine();
+  const int max = thread_count(execution, machine);
   if (execution.executor == scheduler::ExecutorKind::kSerial) {
     counts = {1};
   } else if (counts.empty()) {
@@ -48,9 +51,17 @@ std::vector<int> thread_counts(const ProfileJob& job, const ProfiledCommand& com
     }
     counts.push_back(max);
   }
-  std::ranges::sort(counts);
-  counts.erase(std::ranges::unique(counts).begin(), counts.end());
-  return counts;
+  for (int& count : counts) {
+    const ExecutionOptions asked{.threads = count};
+    for (const Remark& remark : thread_remarks(asked, machine)) {
+      if (!job.quiet) {
+        tell("profile: {}\n", with_dashes(remark.text));
+      }
+    }
+    count = thread_count(asked, machine);
+  }
+  const std::set<int> distinct(counts.begin(), counts.end());
+  return {distinct.begin(), distinct.end()};
 }
 
 std::string start_time_text() {

@@ -1,9 +1,7 @@
 #include "apps/reports/remarks.h"
 
-#include <fmt/format.h>
-
 #include "apps/process/tell.h"
-#include "engine/execution.h"
+#include "engine/thread_placement.h"
 
 namespace vantage::apps {
 
@@ -17,17 +15,8 @@ void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, 
   }
 }
 
-void tell_threads(Execution& execution, const CommonOptions& common, RunReport& report) {
-  constexpr int kThreadsPerProcessor = 16;
-  const int threads = execution.executor().thread_count();
-  const int processors = execution.machine().hardware_threads;
-  if (threads > kThreadsPerProcessor * processors) {
-    const Remark remark{Remark::Kind::kNote, "threads",
-                        fmt::format("`threads` {} for {} processor{}: they take turns, and looking "
-                                    "for work takes longer than the work",
-                                    threads, processors, processors == 1 ? "" : "s")};
-    tell_remarks({&remark, 1}, common, report);
-  }
+void tell_threads(const Execution& execution, const CommonOptions& common, RunReport& report) {
+  tell_remarks(thread_remarks(execution.options(), execution.machine()), common, report);
 }
 
 void tell_match(const MatchReport& match, const CommonOptions& common, RunReport& report) {

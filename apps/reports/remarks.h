@@ -10,8 +10,8 @@ namespace vantage::apps {
 
 /// Prints remarks of the engine on stderr, unless that is quiet, and adds them to the report.
 void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, RunReport& report);
-/// Prints a note, and adds it to the report, if there are far more threads than processors.
-void tell_threads(Execution& execution, const CommonOptions& common, RunReport& report);
+/// The same for thread_remarks().
+void tell_threads(const Execution& execution, const CommonOptions& common, RunReport& report);
 /// The same for those of a match, and what its map is worth (`results.map`); adds its stages.
 void tell_match(const MatchReport& match, const CommonOptions& common, RunReport& report);
 /// One line: how much of the map was matched and filled. Unless that is quiet.

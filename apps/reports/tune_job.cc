@@ -17,6 +17,7 @@
 #include "apps/process/outputs.h"
 #include "apps/process/progress.h"
 #include "apps/process/tell.h"
+#include "apps/reports/remarks.h"
 #include "apps/reports/run_report.h"
 #include "apps/reports/tuning_report.h"
 #include "engine/error.h"
@@ -144,6 +145,7 @@ int run_tune(const TuneJob& job, const Settings& settings) {
   {
     Execution execution(job.common.execution);
     report.set_execution(execution);
+    tell_threads(execution, job.common, report);
   }
   const scheduler::Machine machine = scheduler::detect_machine();
   if (job.dry_run) {

@@ -1,5 +1,7 @@
 #include "engine/options/execution_settings.h"
 
+#include <fmt/format.h>
+
 namespace vantage {
 
 void add_execution_settings(Settings& settings, ExecutionOptions& execution, Work work) {
@@ -7,7 +9,8 @@ void add_execution_settings(Settings& settings, ExecutionOptions& execution, Wor
   using scheduler::ThreadBinding;
   settings.start_group("Execution (never changes a result)", false);
   settings.integer("threads", execution.threads, "N",
-                   "Number of threads, 1 to 1024; auto: all that this process may use");
+                   fmt::format("Threads, up to {} a processor; auto: all that this process may use",
+                               kMaxThreadsPerProcessor));
   settings.choice<ExecutorKind>("executor", execution.executor,
                                 {{"tbb", ExecutorKind::kTbb},
                                  {"openmp", ExecutorKind::kOpenMp},

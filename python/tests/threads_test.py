@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import cv2
 import numpy as np
+import pytest
 from conftest import same, unrectified_pair
 
 import vantage
@@ -25,6 +26,12 @@ def test_calls_at_a_time_share_the_threads(pair):
         # The six threads of Python and, at most, the pool of the engine.
         assert len(os.listdir("/proc/self/task")) <= before + 6 + 2
     assert all(same(map_px, expected) for map_px in maps)
+
+
+def test_far_more_threads_than_processors_are_told_and_not_made():
+    processors = vantage.Matcher(disparities=(0, 15)).threads
+    with pytest.warns(UserWarning, match=f"1024 for {processors} processors?: {16 * processors} are"):
+        assert vantage.Matcher(disparities=(0, 15), threads=1024).threads == 16 * processors
 
 
 def test_one_result_in_several_threads(pair):

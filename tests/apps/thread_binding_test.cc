@@ -88,13 +88,21 @@ TEST_F(MatchOnNodes, TracesHaveTheThreadsOfAllNodes) {
   EXPECT_NEAR(all_s / in_pool, totals.at("wall_seconds").get<double>(), 1e-3);
 }
 
-TEST_F(MatchOnNodes, ManyMoreThreadsThanProcessorsAreTold) {
+TEST_F(MatchOnNodes, ManyMoreThreadsThanProcessorsAreToldAndNotMade) {
   const std::string machine = "HWLOC_SYNTHETIC=node:1 core:1 pu:1";
-  const std::string note = "--threads 17 for 1 processor: ";
-  EXPECT_THAT(succeeds(match_on(machine, folder_ / "d.pfm", {"--threads", "17"})).err,
-              HasSubstr("match: " + note));
-  EXPECT_THAT(succeeds(match_on(machine, folder_ / "d.pfm", {"--threads", "16"})).err,
-              Not(HasSubstr("processor:")));
+  const std::string report = folder_ / "r.json";
+  const std::string note = "--threads 17 for 1 processor: 16 are used, ";
+  for (const std::string executor : {"tbb", "openmp"}) {
+    const Words words = {"--executor", executor, "--report", report};
+    EXPECT_THAT(
+        succeeds(match_on(machine, folder_ / "d.pfm", joined(words, {"--threads", "17"}))).err,
+        HasSubstr("match: " + note));
+    EXPECT_EQ(read_json(report).at("threads"), 16);
+    EXPECT_THAT(
+        succeeds(match_on(machine, folder_ / "d.pfm", joined(words, {"--threads", "16"}))).err,
+        Not(HasSubstr("processor:")));
+    EXPECT_EQ(read_json(report).at("threads"), 16);
+  }
 }
 
 TEST_F(MatchOnNodes, SerialExecutorsAreNotBound) {
