@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iterator>
 #include <new>
 #include <string>
 #include <system_error>
@@ -114,8 +115,12 @@ int run(Arguments arguments, std::string& name) {
     throw vantage::UsageError("a command is missing; see 'vantage --help'");
   }
   if (arguments.front() == "help") {
-    std::rotate(arguments.begin(), arguments.begin() + 1, arguments.end());
-    arguments.back() = "--help";
+    Arguments asked;
+    for (auto word = arguments.begin() + 1; word != arguments.end(); ++word) {
+      std::ranges::move(vantage::split(*word, ' '), std::back_inserter(asked));
+    }
+    asked.emplace_back("--help");
+    arguments = std::move(asked);
   }
   if (arguments.front() == "--help" || arguments.front() == "-h") {
     std::fputs(help().c_str(), stdout);
@@ -143,6 +148,7 @@ int run(Arguments arguments, std::string& name) {
     throw vantage::UsageError(unknown_command(arguments));
   }
   name = command->name;
+  vantage::apps::name_process(command->name);
   return command->run(arguments);
 }
 

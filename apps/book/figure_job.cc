@@ -116,7 +116,7 @@ std::vector<MadeFigure> make_figures(const FigureJob& job,
                     job.common.quiet ? ProgressStyle::kNone : ProgressStyle::kAuto);
   for (const BookFigure* figure : figures) {
     MadeFigure& one =
-        made.emplace_back(figure, settings_in_force(*figure, job.settings), FigureContent{});
+        made.emplace_back(MadeFigure{figure, settings_in_force(*figure, job.settings), {}});
     one.content = work.report.timed_compute("figures", [&] {
       return figure->make({.settings = one.settings,
                            .execution = work.execution,

@@ -10,9 +10,12 @@
 #include <exception>
 #include <initializer_list>
 #include <new>
+#include <string_view>
 
+#include "apps/commands/commands.h"
 #include "apps/process/interrupt.h"
 #include "apps/process/tell.h"
+#include "engine/io/files/unfinished_files.h"
 
 namespace vantage::apps {
 namespace {
@@ -21,6 +24,7 @@ namespace {
 /// JSON values allocate, messages do. Large enough to be a mapping of its own.
 constexpr std::size_t kReserveBytes = std::size_t{512} << 10;
 std::atomic<void*> reserve{nullptr};  // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+std::string_view name_of_process;     // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 void give_reserve_back() {
   void* const block = reserve.exchange(nullptr);
@@ -31,17 +35,28 @@ void give_reserve_back() {
 }
 
 /// In place of the C++ library's, which prints to the stream that keep_libraries_quiet() closes.
+/// Destructors of JSON values and of OpenCV allocate: where memory ends, that is no defect.
 [[noreturn]] void end_by_uncaught_error() {
-  tell_text("vantage: ended by an error that nothing caught");
+  tell_text("vantage");
+  tell_text(name_of_process.empty() ? "" : " ");
+  tell_text(name_of_process);
+  const std::exception_ptr error = std::current_exception();
+  const char* text = "";
   try {
-    if (const std::exception_ptr error = std::current_exception()) {
+    if (error) {
       std::rethrow_exception(error);
     }
-  } catch (const std::exception& error) {
-    tell_text(": ");
-    tell_text(error.what());
-  } catch (...) {  // has no text
+  } catch (const std::bad_alloc&) {
+    tell_text(": out of memory\n");
+    remove_unfinished_files();
+    std::_Exit(kExitFailed);
+  } catch (const std::exception& known) {
+    text = known.what();  // `error` keeps it
+  } catch (...) {         // has no text
   }
+  tell_text(": ended by an error that nothing caught");
+  tell_text(*text == '\0' ? "" : ": ");
+  tell_text(text);
   tell_text("\n");
   std::abort();
 }
@@ -58,6 +73,8 @@ void keep_libraries_quiet() {
 }
 
 }  // namespace
+
+void name_process(std::string_view command) { name_of_process = command; }
 
 void set_up_process() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {

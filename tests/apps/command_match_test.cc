@@ -212,6 +212,7 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
             "vantage: unknown command 'disparity': 'vantage match' computes disparity maps\n");
   EXPECT_EQ(run_vantage({"help"}).out, run_vantage({"--help"}).out);
   EXPECT_EQ(run_vantage({"help", "match"}).out, run_vantage({"match", "--help"}).out);
+  EXPECT_EQ(run_vantage({"help", "scene view"}).out, run_vantage({"help", "scene", "view"}).out);
   EXPECT_EQ(run_vantage({"help", "scene", "view"}).out,
             run_vantage({"scene", "view", "--help"}).out);
   EXPECT_EQ(run_vantage({}).exit_code, 2);

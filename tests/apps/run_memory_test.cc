@@ -198,4 +198,24 @@ TEST_F(SlowRunMemory, FramesAllocateFewLargeBlocks) {
             30);
 }
 
+/// A report is JSON, whose destructors allocate.
+TEST_F(SlowRunMemory, EndsInOneLineWhileAReportIsWritten) {
+  const Words match = {"match", left_ + "/000000.png", right_ + "/000000.png",
+                       "-o",    folder_ / "d.pfm",     "--disparities=0:9"};
+  constexpr std::size_t kBytes = 4096;
+  const int last = static_cast<int>(allocations(match, kBytes));
+  int failures = 0;
+  for (int refused = last - 3; refused <= last; ++refused) {
+    const ProcessResult result = run_vantage(
+        joined(match, {"--threads", "2", "--quiet", "--report", folder_ / "r.json"}),
+        preloaded(test_paths::allocation_count(), {"ALLOCATION_FAIL=" + std::to_string(refused),
+                                                   "ALLOCATION_BYTES=" + std::to_string(kBytes)}));
+    if (result.exit_code != 0) {
+      ++failures;
+      expect_one_line(result, 1, "match");
+    }
+  }
+  EXPECT_GT(failures, 0);
+}
+
 }  // namespace vantage::run_memory_test
