@@ -77,6 +77,11 @@ std::string finish_if_whole(const RunJob& job, const RunSession& session,
     return "";
   }
   const DeliveredFrames delivered(layout);
+  const std::vector<FrameRange> lost = delivered.missing(session.selection.all());
+  if (!lost.empty() && !job.input.is_stream()) {
+    throw Error(fmt::format("{}: frames {} are not as they were written, `resume` makes them again",
+                            layout.folder().string(), to_string(lost)));
+  }
   const FrameRange frames = contiguous_frames(delivered, session.selection.frame_count);
   const std::string sound_problem = report.timed_file_access("join", [&] {
     return join_segments(job.sequence, layout, session.identity, frames,

@@ -1,4 +1,5 @@
-// Runs whose results cannot be written.
+// Runs whose results cannot be written, or whose film cannot be read. What the disk could not do is
+// told, also where only names or sound depend on it.
 
 #include <sys/mount.h>
 
@@ -6,7 +7,8 @@
 #include <csignal>
 #include <thread>
 
-#include "tests/apps/run_fixture.h"
+#include "tests/apps/preloaded.h"
+#include "tests/apps/sampling.h"
 
 namespace vantage::run_disk_test {
 
@@ -160,6 +162,101 @@ TEST_F(RunDisk, AFolderThatGoesAwayAndComesBack) {
               expected.at("disparity/" + frame_file(frame % kFrames, "pfm")))
         << frame;
   }
+}
+
+std::string numbers(std::initializer_list<std::uint32_t> all) {
+  std::string bytes;
+  for (const std::uint32_t number : all) {
+    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+  }
+  return bytes;
+}
+
+std::string chunk(const std::string& name, const std::string& content) {
+  return name + numbers({static_cast<std::uint32_t>(content.size())}) + content;
+}
+
+/// An AVI of two frames a second, nothing compressed, with sound of 8 kHz.
+std::string sounding_film(std::uint32_t seconds) {
+  constexpr std::uint32_t kSide = 16;
+  constexpr std::uint32_t kSamples = 8000;
+  const std::uint32_t frames = 2 * seconds;
+  const auto list = [](const std::string& content) { return chunk("LIST", content); };
+  const std::string main =
+      chunk("avih", numbers({500'000, 0, 0, 0, frames, 0, 2, 0, kSide, kSide, 0, 0, 0, 0}));
+  const std::string pictures =
+      chunk("strh", "vidsDIB " + numbers({0, 0, 0, 1, 2, 0, frames, 0, 0, 0, 0, 0})) +
+      chunk("strf", numbers({40, kSide, kSide, 1 | 24U << 16U, 0, 0, 0, 0, 0, 0}));
+  const std::string sound =
+      chunk("strh",
+            "auds" + numbers({0, 0, 0, 0, 2, 2 * kSamples, 0, kSamples * seconds, 0, 0, 2, 0, 0})) +
+      chunk("strf", numbers({1 | 1U << 16U, kSamples, 2 * kSamples, 2 | 16U << 16U}));
+  std::string content;
+  SampledNumbers random(1);
+  const auto noise = [&](std::size_t bytes) {
+    std::string made(bytes, 0);
+    std::ranges::generate(made, [&] { return static_cast<char>(random.below(256)); });
+    return made;
+  };
+  for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    content += chunk("00db", noise(kSide * kSide * 3)) + chunk("01wb", noise(kSamples));
+  }
+  return chunk("RIFF", "AVI " +
+                           list("hdrl" + main + list("strl" + pictures) + list("strl" + sound)) +
+                           list("movi" + content));
+}
+
+class IoErrors : public RunTest {
+ protected:
+  [[nodiscard]] Words failing(const std::string& call, int number) const {
+    return fault_at("FAIL", call + ":" + std::to_string(number), folder_.path().string());
+  }
+};
+
+TEST_F(IoErrors, NoFlushFailsUnnoticed) {
+  const Words match = {"match",  left_ + "/000000.png", right_ + "/000000.png",
+                       "-o",     folder_ / "d.pfm",     "--disparities=0:9",
+                       "--quiet"};
+  // The file, and the folder with its name.
+  for (const int flush : {1, 2}) {
+    expect_one_line(run_vantage(match, failing("fsync", flush)), 1, "match",
+                    "cannot write " + (flush == 1 ? folder_ / "d.pfm" : folder_.path().string()) +
+                        ": Input/output error");
+  }
+  const std::string out = folder_ / "out";
+  const Words run = arguments(out, joined(kVideoOutputs, {"--frames", "0-9", "--quiet"}));
+  // How often folders are flushed depends on how many frames are delivered together.
+  const int fewest = calls_of(run, folder_.path().string()).counts.at("fsync") / 2;
+  const FolderContent expected = results_in(out);
+  for (const int flush : sampled_range(1, fewest, 3, 31)) {
+    fs::remove_all(out);
+    expect_one_line(run_vantage(run, failing("fsync", flush)), 1, "run", "nput/output error");
+    succeeds(run_vantage(joined(run, {"--resume"})));
+    EXPECT_TRUE(same_files(results_in(out), expected)) << flush;
+  }
+}
+
+/// Demultiplexers take a failing read for the end of the file.
+TEST_F(IoErrors, SoundThatCannotBeReadIsTold) {
+  constexpr std::uint32_t kSeconds = 8;  // more than one read
+  write_file(folder_ / "film.avi", sounding_film(kSeconds));
+  fs::create_directory(folder_ / "bad");
+  const std::string film = folder_ / "bad/film.mp4";
+  const auto run_of = [&](const std::string& input, const std::string& out) {
+    return Words{"run",    "--left", input,      "--right",         input,    "--disparities=0:1",
+                 "--save", "views",  "--video",  "views",           "--view", "0",
+                 "-o",     out,      "--report", folder_ / "r.json"};
+  };
+  succeeds(run_vantage(run_of(folder_ / "film.avi", folder_ / "first")));
+  fs::rename(folder_ / "first/views.mp4", film);
+  const Words words = run_of(film, folder_ / "out");
+  const int reads = calls_of(words, film).counts.at("read");
+  EXPECT_EQ(read_json(folder_ / "r.json")["results"]["sound_problem"], "");
+  const ProcessResult result = succeeds(run_vantage(
+      joined(words, {"--overwrite"}), fault_at("FAIL", "read:" + std::to_string(reads), film)));
+  const std::string problem = film + ": its sound cannot be read (input/output error)";
+  EXPECT_THAT(result.err, HasSubstr("run: note: the videos have no sound: " + problem));
+  EXPECT_EQ(read_json(folder_ / "r.json")["results"]["sound_problem"], problem);
 }
 
 }  // namespace vantage::run_disk_test

@@ -82,8 +82,7 @@ int AtomicFile::flush() const {
 }
 
 void AtomicFile::flush_name() const {
-  // Makes the new name itself durable. Some file systems cannot do this for folders; the file is
-  // complete either way.
+  // Makes the new name itself durable.
   flush_folder(folder_of(final_path_));
 }
 

@@ -1,10 +1,14 @@
 #include "engine/io/files/file_descriptor.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <system_error>
+
+#include "engine/error.h"
 
 namespace vantage {
 
@@ -35,8 +39,10 @@ bool write_all_at(int descriptor, std::size_t offset, std::span<const std::uint8
 
 void flush_folder(const std::filesystem::path& folder) {
   const FileDescriptor open_folder(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (open_folder.valid()) {
-    (void)::fsync(open_folder.get());
+  if (open_folder.valid() && ::fsync(open_folder.get()) != 0 && errno != EINVAL &&
+      errno != ENOTSUP && errno != EROFS) {
+    throw Error(fmt::format("cannot write {}: {}", folder.string(),
+                            std::generic_category().message(errno)));
   }
 }
 

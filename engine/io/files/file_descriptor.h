@@ -39,7 +39,8 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes);
 /// The same from byte `offset` of a file on; threads may write different parts at a time.
 bool write_all_at(int descriptor, std::size_t offset, std::span<const std::uint8_t> bytes);
 
-/// Makes names in `folder` durable across a power cut, if the file system supports it.
+/// Makes names in `folder` durable across a power cut, if the file system supports it. Throws Error
+/// naming the folder where the disk fails.
 void flush_folder(const std::filesystem::path& folder);
 
 /// Holds an exclusive lock on the existing file `path` for the lifetime of the object. Has no

@@ -247,7 +247,13 @@ AVStream* find_video_stream(AVFormatContext& input, int track) {
 }
 
 AVStream* find_sound_stream(AVFormatContext& input) {
-  return find_stream(input, AVMEDIA_TYPE_AUDIO);
+  AVStream* sound = find_stream(input, AVMEDIA_TYPE_AUDIO);
+  // FFmpeg passes over a sound of which it could find out nothing.
+  for (unsigned i = 0; i < input.nb_streams && sound == nullptr; ++i) {
+    AVStream* stream = input.streams[i];
+    sound = stream->codecpar->codec_type == AVMEDIA_TYPE_AUDIO ? stream : nullptr;
+  }
+  return sound;
 }
 
 void read_only(AVFormatContext& input, const AVStream& stream) {

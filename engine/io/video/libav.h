@@ -75,7 +75,7 @@ constexpr int kMainVideo = -1;
 std::string name_of_track(const std::filesystem::path& path, int track);
 /// That of video_streams(), or its only or main video; null when there is none.
 AVStream* find_video_stream(AVFormatContext& input, int track = kMainVideo);
-/// Its only or main sound; null when there is none.
+/// Its only or main sound, also one that nothing is known about; null when there is none.
 AVStream* find_sound_stream(AVFormatContext& input);
 /// Discards the packets of all other streams, except those already read by opening the file.
 void read_only(AVFormatContext& input, const AVStream& stream);

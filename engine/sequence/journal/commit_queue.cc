@@ -22,39 +22,40 @@ constexpr std::size_t kMaxWaiting = 16;
 /// one, and four achieve most of the gain.
 constexpr std::size_t kFlushThreads = 4;
 
-/// Calls flush(i) for i in [0, count), several at a time; it must not throw.
+/// Calls flush(i) for i in [0, count), several at a time, then rethrows the error of the first that
+/// failed.
 template <typename Flush>
 void flush_together(std::size_t count, const Flush& flush) {
   std::atomic<std::size_t> next{0};
+  std::vector<std::exception_ptr> errors(count);
   scheduler::ProcessorAccount* account = scheduler::ProcessorCharge::account_in_use();
   const auto take_turns = [&] {
     const scheduler::ProcessorCharge charge(account);
     for (std::size_t i = next++; i < count; i = next++) {
-      flush(i);
+      try {
+        flush(i);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
     }
   };
-  std::vector<std::jthread> others;
-  for (std::size_t thread = 1; thread < std::min(count, kFlushThreads); ++thread) {
-    others.emplace_back(take_turns);
-  }
-  take_turns();
-}
-
-/// Names the videos durably, because the next journal records refer to them.
-void finish_videos(const std::vector<std::shared_ptr<VideoWriter>>& videos) {
-  std::vector<std::exception_ptr> errors(videos.size());
-  flush_together(videos.size(), [&](std::size_t i) {
-    try {
-      videos[i]->finish();
-    } catch (...) {
-      errors[i] = std::current_exception();
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t thread = 1; thread < std::min(count, kFlushThreads); ++thread) {
+      others.emplace_back(take_turns);
     }
-  });
+    take_turns();
+  }
   for (const std::exception_ptr& error : errors) {
     if (error) {
       std::rethrow_exception(error);
     }
   }
+}
+
+/// Names the videos durably, because the next journal records refer to them.
+void finish_videos(const std::vector<std::shared_ptr<VideoWriter>>& videos) {
+  flush_together(videos.size(), [&](std::size_t i) { videos[i]->finish(); });
 }
 
 }  // namespace
@@ -137,13 +138,13 @@ void CommitQueue::deliver(std::vector<Delivery>& batch) {
   double cells = 0;
   const auto record_delivered = [&] {
     const std::vector<std::filesystem::path> changed(folders.begin(), folders.end());
-    flush_together(changed.size(), [&](std::size_t i) { flush_folder(changed[i]); });
-    if (!records.empty()) {
-      try {
+    try {
+      flush_together(changed.size(), [&](std::size_t i) { flush_folder(changed[i]); });
+      if (!records.empty()) {
         journal_.append(records);
-      } catch (const Error& error) {
-        throw DeliveryError(fmt::format("frame {}: {}", frame, error.what()));
       }
+    } catch (const Error& error) {
+      throw DeliveryError(fmt::format("frame {}: {}", frame, error.what()));
     }
     if (frames > 0) {
       on_delivered_(frames, cells);

@@ -61,7 +61,7 @@ DeliveredFrames::DeliveredFrames(const SequenceLayout& layout) {
   std::erase_if(journal.segments, [&](const SegmentRecord& segment) {
     return !are_there(segment.files) ||
            !std::ranges::all_of(segment.files, [&](const FileRecord& file) {
-             return file_content(layout.folder() / file.name) == file.content;
+             return record_of_file(layout.folder(), file.name).content == file.content;
            });
   });
   segments_ = outermost(journal.segments);

@@ -15,7 +15,8 @@ class DeliveredFrames {
  public:
   /// Reads the journal of the layout's folder and checks every file that it lists. Segments whose
   /// bytes have changed do not count, nor do frames whose files are missing or of another size, or
-  /// that are in no video segment if there are videos, except for files_of().
+  /// that are in no video segment if there are videos, except for files_of(). Throws Error where a
+  /// segment cannot be read.
   explicit DeliveredFrames(const SequenceLayout& layout);
 
   /// Delivered and not skipped.

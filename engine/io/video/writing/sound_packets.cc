@@ -92,7 +92,7 @@ bool SoundInput::read(AVPacket& packet) {
       return false;
     }
     if (result >= 0 && (packet.flags & AV_PKT_FLAG_CORRUPT) != 0 &&
-        libav().avio_feof(input_->pb) != 0) {
+        libav().avio_feof(input_->pb) != 0 && read_error(*input_) == 0) {
       libav().av_packet_unref(&packet);
       return false;
     }
@@ -136,6 +136,9 @@ std::unique_ptr<SoundPackets> open_sound_packets(const SoundTrack& track) {
   SoundInput input(track);
   if (input.stream() == nullptr) {
     return nullptr;
+  }
+  if (input.stream()->codecpar->sample_rate <= 0) {
+    input.fail("no sample rate or channels");
   }
   if (is_copied(input.stream()->codecpar->codec_id)) {
     return std::make_unique<CopiedSound>(std::move(input));
