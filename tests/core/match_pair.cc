@@ -1,4 +1,4 @@
-// usage: match_pair LEFT.ppm RIGHT.ppm MAP.pfm VIEW.ppm
+// usage: match_pair LEFT.ppm RIGHT.ppm MAP VIEW
 // Matches two pictures by the core alone, as 'vantage match' does with --disparities 1:17, and
 // makes the view between them. Exits 1 unless what needs OpenCV is refused.
 #include <cstdint>
@@ -28,13 +28,10 @@ vantage::Photograph read_ppm(const char* path) {
 }
 
 template <typename T>
-void write(const std::string& header, vantage::ImageView<const T> image, bool is_upwards,
-           const char* path) {
+void write_rows(const vantage::Image<T>& image, const char* path) {
   std::ofstream file(path, std::ios::binary);
-  file << header;
-  for (int k = 0; k < image.height(); ++k) {
-    const T* row = image.row(is_upwards ? image.height() - 1 - k : k);
-    file.write(reinterpret_cast<const char*>(row),
+  for (int y = 0; y < image.height(); ++y) {
+    file.write(reinterpret_cast<const char*>(image.row(y)),
                static_cast<std::streamsize>(sizeof(T)) * image.width() * image.channels());
   }
 }
@@ -59,21 +56,11 @@ int main(int, char** arguments) {
   vantage::MatchOptions options;
   options.disparities = {1, 17};
   vantage::Execution execution({.threads = 2});
-  vantage::MatchReport report;
-  vantage::PairMatcher(options, execution).match(pair.left, pair.right, {}, pair.maps, &report);
-  for (const vantage::Remark& remark : report.remarks) {
-    std::printf("%s: %s\n", std::string(remark.subject).c_str(), remark.text.c_str());
-  }
+  vantage::PairMatcher(options, execution).match(pair.left, pair.right, {}, pair.maps);
   vantage::RenderedView view;
   vantage::ViewRenderer(pair, {}, {}, execution).render(vantage::BaselinePosition{0.5, 0}, view);
-
-  const std::string size =
-      std::to_string(pair.left.width()) + " " + std::to_string(pair.left.height());
-  write(std::string("Pf\n") + size + "\n-1.0\n", std::as_const(pair.maps.left.disparity_px).view(),
-        true, arguments[3]);
-  write("P6\n" + size + "\n255\n",
-        std::as_const(std::get<vantage::Image<std::uint8_t>>(view.picture(false).pixels)).view(),
-        false, arguments[4]);
+  write_rows(pair.maps.left.disparity_px, arguments[3]);
+  write_rows(std::get<vantage::Image<std::uint8_t>>(view.picture(false).pixels), arguments[4]);
   std::printf("executor %s\n", std::string(execution.executor().name()).c_str());
 
   options.disparities_y = vantage::DisparityRange{0, 0};
