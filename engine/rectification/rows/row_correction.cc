@@ -14,6 +14,9 @@
 namespace vantage {
 namespace {
 
+// Fields are smooth: so many columns whose first and last come from one row all come from it.
+constexpr int kColumnsOfARow = 16;
+
 /// `image` with pixel (x, y) from row row_of(x, y).
 template <typename T, typename RowOf>
 Image<T> with_moved_rows(const Image<T>& image, const RowOf& row_of, Execution& execution) {
@@ -22,9 +25,20 @@ Image<T> with_moved_rows(const Image<T>& image, const RowOf& row_of, Execution& 
     return moved;
   }
   execution.for_each_row(image.height(), [&](int y) {
-    for (int x = 0; x < image.width(); ++x) {
+    const auto source = [&](int x) {
       const auto row = static_cast<int>(std::lround(row_of(x, y)));
-      moved.at(x, y) = image.at(x, std::clamp(row, 0, image.height() - 1));
+      return image.row(std::clamp(row, 0, image.height() - 1));
+    };
+    for (int begin = 0; begin < image.width(); begin += kColumnsOfARow) {
+      const int end = std::min(begin + kColumnsOfARow, image.width());
+      const T* const first = source(begin);
+      if (first == source(end - 1)) {
+        std::copy(first + begin, first + end, moved.row(y) + begin);
+        continue;
+      }
+      for (int x = begin; x < end; ++x) {
+        moved.at(x, y) = source(x)[x];
+      }
     }
   });
   return moved;
