@@ -79,7 +79,7 @@ constexpr Rule kMatchRules[] = {
     {kMatch, "user cross-check PX", "cross-check = none",
      "a number of pixels for cross-check is set but has no effect with cross-check none"},
     {kMatch, "user uniform-contrast != 1",
-     "fill = constant | fill = linear | fill = median | fill = planes | fill = farther | fill = "
+     "fill = constant | fill = linear | fill = median | fill = planes | fill = surfaces | fill = "
      "none",
      "{option} is set but has no effect with a fill other than canonical and thin-plate"},
     {kMatch, "user surface-fit-step > 1", "surface-fit = 0",

@@ -176,10 +176,10 @@ inline constexpr std::array kOptionTexts = {
                "Value of unmatched pixels. constant: disparity of the background beside them; "
                "linear: interpolated where both sides nearly agree, else constant; median: median "
                "of similar pixels around; planes: as median, and the band at the border that the "
-               "other image never shows by planes; farther: as planes, but from the farther side "
-               "or, where both may be of one surface, interpolated; canonical: regions without "
-               "texture interpolated between their ends, other pixels as median; thin-plate: the "
-               "same, continuing slopes; none: unknown"},
+               "other image never shows by planes; surfaces: as planes, and what the other image "
+               "does not show by the surfaces around, where these agree; canonical: regions "
+               "without texture interpolated between their ends, other pixels as median; "
+               "thin-plate: the same, continuing slopes; none: unknown"},
     OptionText{
         "uniform-contrast", "C",
         "With fill canonical and thin-plate: a region has no texture if neighbouring columns "

@@ -16,6 +16,12 @@ namespace vantage {
 struct FilledMediansWork {
   DisparityMap before;         ///< copy of the map, with margins
   Image<std::uint8_t> pixels;  ///< the photograph in the kernel's format, with margins
+
+  /// Three channels of the photograph, 0..255.
+  [[nodiscard]] const std::uint8_t* pixel(int x, int y) const {
+    return pixels.row(y + kernels::kFilledMedianReachPx) +
+           std::ptrdiff_t{kernels::kFilledPixelBytes} * (x + kernels::kFilledMedianMarginPx);
+  }
 };
 
 inline std::size_t held_bytes(const FilledMediansWork& work) {

@@ -37,7 +37,7 @@ void check_against(const RefinementOptions& options, const MapToRefine& to_refin
   const float columns_per_px = 1.0F / static_cast<float>(to_refine.pixels_per_column);
   cross_check(map_px, check_px, to_refine.side, options.cross_check_px, execution, map.unmatched,
               columns_per_px);
-  if (options.fill == Fill::kFarther) {
+  if (options.fill == Fill::kSurfaces) {
     OtherCameraView& view = other_view(to_refine, work);
     view.side = to_refine.side;
     view.columns_per_px = columns_per_px;
@@ -92,7 +92,7 @@ bool takes_medians(Fill fill) {
 
 /// Half the columns tell too little of slopes to take planes by default.
 bool takes_planes(Fill fill, int pixels_per_column) {
-  return fill == Fill::kPlanes || (fill == Fill::kFarther && pixels_per_column == 1);
+  return fill == Fill::kPlanes || (fill == Fill::kSurfaces && pixels_per_column == 1);
 }
 
 using MapsToRefine = std::span<const MapToRefine* const>;
@@ -160,9 +160,9 @@ void fill(const RefinementOptions& options, const MapToRefine& map, bool is_chec
     fill_border_planes(matched.unmatched, map.side, map.pixels_per_column, map.search, execution,
                        matched.disparity_px);
   }
-  if (is_checked && options.fill == Fill::kFarther && matched.disparity_y_px.empty()) {
-    mend_contradicted(matched.unmatched, other_view(map, work), work.filled_medians, execution,
-                      work.of_partner, matched.disparity_px);
+  if (is_checked && options.fill == Fill::kSurfaces && matched.disparity_y_px.empty()) {
+    fill_by_surfaces(matched.unmatched, other_view(map, work), work.filled_medians, map.search,
+                     execution, work.surface_fill, matched.disparity_px);
   }
   if (map.kept != nullptr) {
     if (!is_canonical) {  // whose regions reach over many tiles
@@ -178,8 +178,9 @@ std::size_t held_bytes(const RefinementWork& work) {
   return held_bytes(work.edge_snapping) + held_bytes(work.speckles[0]) +
          held_bytes(work.speckles[1]) + held_bytes(work.surface_fit) +
          held_bytes(work.filled_medians) + held_bytes(work.uniform_pixels) +
-         held_bytes(work.uniform) + held_bytes(work.rest) + held_bytes(work.of_partner) +
-         held_bytes(work.other_views[0]) + held_bytes(work.other_views[1]);
+         held_bytes(work.uniform) + held_bytes(work.surface_fill) + held_bytes(work.rest) +
+         held_bytes(work.of_partner) + held_bytes(work.other_views[0]) +
+         held_bytes(work.other_views[1]);
 }
 
 void refine_maps(const RefinementOptions& options, const MapToRefine& map, const MapToRefine* other,

@@ -14,10 +14,11 @@
 #include "engine/refinement/edge_snapping.h"
 #include "engine/refinement/filled_medians.h"
 #include "engine/refinement/kept_refinement.h"
-#include "engine/refinement/occlusion_consistency.h"
+#include "engine/refinement/other_camera_view.h"
 #include "engine/refinement/refinement.h"
 #include "engine/refinement/refinement_options.h"
 #include "engine/refinement/speckles.h"
+#include "engine/refinement/surface_fill.h"
 #include "engine/refinement/surface_fit.h"
 #include "engine/refinement/uniform_pixels.h"
 
@@ -66,9 +67,10 @@ struct RefinementWork {
   SurfaceFitWork surface_fit;
   FilledMediansWork filled_medians;
   UniformPixelsWork uniform_pixels;
+  SurfaceFillWork surface_fill;
   Mask uniform;                                ///< pixels of regions without texture
   Mask rest;                                   ///< unmatched pixels that are not
-  Mask of_partner;                             ///< of one of several maps; pixels to mend
+  Mask of_partner;                             ///< of one of several maps
   std::array<OtherCameraView, 2> other_views;  ///< of the left and of the right map
 };
 

@@ -11,22 +11,15 @@
 namespace vantage {
 namespace {
 
-// Both sides of a run are one surface (EQUATIONS §5.4); of planes that slopes may have, too (§5.7).
-constexpr kernels::SurfaceStep kLevelStep = {.px = 1};
-constexpr kernels::SurfaceStep kSlantedStep = {.px = 1, .px_per_column = 0.1F};
+// Neighbours whose disparities differ by at most this are one surface (EQUATIONS §6).
+constexpr float kFillSurfaceStepPx = 1;
 
 bool fill_row(const std::uint8_t* unmatched, Side side, Fill fill, int width, float* row_px) {
   const auto background =
       side == Side::kLeft ? kernels::BackgroundSide::kLeft : kernels::BackgroundSide::kRight;
-  switch (fill) {
-    case Fill::kFarther:
-      return kernels::fill_unmatched_row_linearly(unmatched, kernels::BackgroundSide::kFarther,
-                                                  kSlantedStep, width, row_px);
-    case Fill::kLinear:
-      return kernels::fill_unmatched_row_linearly(unmatched, background, kLevelStep, width, row_px);
-    default:
-      return kernels::fill_unmatched_row(unmatched, background, width, row_px);
-  }
+  return fill == Fill::kLinear ? kernels::fill_unmatched_row_linearly(
+                                     unmatched, background, kFillSurfaceStepPx, width, row_px)
+                               : kernels::fill_unmatched_row(unmatched, background, width, row_px);
 }
 
 kernels::CrossCheckRow row_to_check(ImageView<const float> map_px, int y, Side side,

@@ -32,9 +32,8 @@ void mark_unsure(ImageView<const float> confidence, double threshold, Execution&
                  Mask& unmatched);
 
 /// Fills unmatched pixels (EQUATIONS §5.4): at constant depth; with Fill::kLinear along a line
-/// where the disparities at both ends of a run differ by at most 1 px; with Fill::kFarther along a
-/// line where they may be of one slanted surface, else as the farther end; with Fill::kNone as
-/// unknown (NaN). All others are constant depth here; take_filled_medians() refines it. Except for
+/// where the disparities at both ends of a run differ by at most 1 px; with Fill::kNone as unknown
+/// (NaN). All others are constant depth here; take_filled_medians() refines it. Except for
 /// kNone, a row without matched pixels copies the nearest row that has some (the upper one on a
 /// tie), and a map without any is unchanged. Identical for any `execution`.
 void fill_unmatched(const Mask& unmatched, Side side, Fill fill, Execution& execution,

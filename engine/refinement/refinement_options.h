@@ -16,7 +16,7 @@ enum class Fill {
   kLinear,     ///< interpolated where the disparities on both sides nearly agree, else constant
   kMedian,     ///< constant, then the median of similar pixels nearby (filled_medians)
   kPlanes,     ///< median; the band that the other image never shows: planes (border_planes)
-  kFarther,    ///< as kPlanes, from the farther end of each run or along a line (§5.7)
+  kSurfaces,   ///< as kPlanes; hidden pixels by the planes of surfaces around (surface_fill)
   kCanonical,  ///< regions without texture: a membrane between their ends; others: as kMedian
   kThinPlate,  ///< the same with a thin plate
   kNone,       ///< unknown

@@ -15,27 +15,6 @@ void interpolate(int begin, int end, float* disparity_px) {
   }
 }
 
-/// Whether the run [begin, end) lies between two pixels of one surface.
-bool is_one_surface(int begin, int end, int width, const SurfaceStep& step,
-                    const float* disparity_px) {
-  return begin > 0 && end < width &&
-         std::abs(disparity_px[end] - disparity_px[begin - 1]) <=
-             step.px + step.px_per_column * static_cast<float>(end - begin + 1);
-}
-
-float background_of(int begin, int end, int width, BackgroundSide side, const float* disparity_px) {
-  if (begin == 0) {
-    return disparity_px[end];
-  }
-  if (end == width) {
-    return disparity_px[begin - 1];
-  }
-  if (side == BackgroundSide::kFarther) {
-    return std::min(disparity_px[begin - 1], disparity_px[end]);
-  }
-  return disparity_px[side == BackgroundSide::kLeft ? begin - 1 : end];
-}
-
 /// First unmatched pixel at or after `x`, or `width`.
 int next_unmatched(const std::uint8_t* unmatched, int x, int width) {
   constexpr int kWordBytes = 8;
@@ -56,12 +35,12 @@ int next_unmatched(const std::uint8_t* unmatched, int x, int width) {
 
 bool fill_unmatched_row(const std::uint8_t* unmatched, BackgroundSide side, int width,
                         float* disparity_px) {
-  constexpr SurfaceStep kNoStep = {.px = -1};
+  constexpr float kNoStep = -1;
   return fill_unmatched_row_linearly(unmatched, side, kNoStep, width, disparity_px);
 }
 
-bool fill_unmatched_row_linearly(const std::uint8_t* unmatched, BackgroundSide side,
-                                 const SurfaceStep& step, int width, float* disparity_px) {
+bool fill_unmatched_row_linearly(const std::uint8_t* unmatched, BackgroundSide side, float step_px,
+                                 int width, float* disparity_px) {
   bool any_matched = false;
   for (int begin = 0; begin < width;) {
     const int matched_from = begin;
@@ -77,11 +56,13 @@ bool fill_unmatched_row_linearly(const std::uint8_t* unmatched, BackgroundSide s
     if (begin == 0 && end == width) {
       return false;
     }
-    if (is_one_surface(begin, end, width, step, disparity_px)) {
+    if (begin > 0 && end < width &&
+        std::abs(disparity_px[end] - disparity_px[begin - 1]) <= step_px) {
       interpolate(begin, end, disparity_px);
     } else {
-      std::fill(disparity_px + begin, disparity_px + end,
-                background_of(begin, end, width, side, disparity_px));
+      const bool from_left = end == width || (side == BackgroundSide::kLeft && begin > 0);
+      const float background = from_left ? disparity_px[begin - 1] : disparity_px[end];
+      std::fill(disparity_px + begin, disparity_px + end, background);
     }
     begin = end;
   }

@@ -58,7 +58,7 @@ TEST_F(InputMatchOptions, BadValuesAreRefusedWithTheirBound) {
       {{"--cross-check", "never"}, "--cross-check is 'never', expected a number"},
       {{"--fill", "quadratic"},
        "--fill is 'quadratic', expected one of "
-       "constant|linear|median|planes|farther|canonical|thin-plate|none"},
+       "constant|linear|median|planes|surfaces|canonical|thin-plate|none"},
       {{"--uniform-contrast", "2"},
        "uniform-contrast is set but has no effect with a fill other than canonical and thin-plate"},
       {{"--depth-resolution", folder_ / "z.npy"},

@@ -59,7 +59,7 @@ TEST(SearchLimits, NoMethodAndNoRefinementLeavesThem) {
   const SlantedPair pair = slanted_pair();
   const std::vector<MethodCase> methods = method_cases(kSearch);
   constexpr Fill kFills[] = {Fill::kConstant, Fill::kLinear, Fill::kMedian,    Fill::kPlanes,
-                             Fill::kFarther,  Fill::kNone,   Fill::kCanonical, Fill::kThinPlate};
+                             Fill::kSurfaces, Fill::kNone,   Fill::kCanonical, Fill::kThinPlate};
   DisparityMaps maps;
   const auto dimensions_fit = [&](const SampleRow& row) {
     // Coarse to fine and edge snapping are along rows only.

@@ -100,7 +100,7 @@ TEST(FillUnmatched, RowWithoutAMatchStaysAsItIs) {
 TEST(FillUnmatchedLinearly, InterpolatesWhereBothSidesAreOneSurface) {
   using Row = std::vector<float>;
   const auto linear = [](std::vector<std::uint8_t> unmatched, BackgroundSide side, Row row) {
-    EXPECT_TRUE(fill_unmatched_row_linearly(unmatched.data(), side, {.px = 1},
+    EXPECT_TRUE(fill_unmatched_row_linearly(unmatched.data(), side, 1,
                                             static_cast<int>(unmatched.size()), row.data()));
     return row;
   };
@@ -112,21 +112,12 @@ TEST(FillUnmatchedLinearly, InterpolatesWhereBothSidesAreOneSurface) {
     // Runs at the border have one side only.
     EXPECT_EQ(linear({255, 0, 255}, side, {9, 4, 9}), (Row{4, 4, 4}));
   }
-  // The farther they are from each other the more they may differ.
-  Row slanted = {4, kUnknown, kUnknown, kUnknown, 6};
-  EXPECT_TRUE(fill_unmatched_row_linearly(std::vector<std::uint8_t>{0, 1, 1, 1, 0}.data(),
-                                          BackgroundSide::kFarther,
-                                          {.px = 1, .px_per_column = 0.25F}, 5, slanted.data()));
-  EXPECT_EQ(slanted, (Row{4, 4.5F, 5, 5.5F, 6}));
   // Different surfaces: constant depth.
   EXPECT_EQ(linear({0, 255, 0}, BackgroundSide::kLeft, {4, 9, 5.25F}), (Row{4, 4, 5.25F}));
   EXPECT_EQ(linear({0, 255, 0}, BackgroundSide::kRight, {4, 9, 5.25F}), (Row{4, 5.25F, 5.25F}));
-  EXPECT_EQ(linear({0, 255, 0, 255, 0}, BackgroundSide::kFarther, {7, 9, 4, 9, 5.25F}),
-            (Row{7, 4, 4, 4, 5.25F}));
-  EXPECT_EQ(linear({255, 0, 255}, BackgroundSide::kFarther, {9, 4, 9}), (Row{4, 4, 4}));
   Row row = {1, 2};
   EXPECT_FALSE(fill_unmatched_row_linearly(std::vector<std::uint8_t>(2, 255).data(),
-                                           BackgroundSide::kLeft, {.px = 1}, 2, row.data()));
+                                           BackgroundSide::kLeft, 1, 2, row.data()));
   EXPECT_EQ(row, (Row{1, 2}));
 }
 

@@ -69,14 +69,14 @@ PresetSettings preset_settings(MatchPreset preset, NoiseKind kind) {
       settings.parameters.iterations = 3;
       settings.parameters.final_iterations = 1;
       settings.refinement.surface_fit_step_px = 2;
-      settings.refinement.fill = Fill::kFarther;
+      settings.refinement.fill = Fill::kSurfaces;
       break;
     case MatchPreset::kQuality:
       settings.parameters.census_thresholds = 3;
       settings.parameters.mu = 0.33;
       settings.parameters.iterations = 10;
       settings.parameters.final_iterations = 3;
-      settings.refinement.fill = Fill::kFarther;
+      settings.refinement.fill = Fill::kSurfaces;
       break;
   }
   if (kind != NoiseKind::kNone) {

@@ -7,7 +7,6 @@
 #include "engine/image/image.h"
 #include "engine/image/memory_use.h"
 #include "engine/image/side.h"
-#include "engine/refinement/filled_medians.h"
 
 namespace vantage {
 
@@ -29,13 +28,8 @@ inline std::size_t held_bytes(const OtherCameraView& view) {
 void keep_matched(ImageView<const float> map_px, double tolerance_px, Execution& execution,
                   Mask& unmatched, OtherCameraView& other);
 
-/// Mends filled pixels (≠ 0 in `unmatched`) which would hide from the other camera what it sees:
-/// the other map is known and farther by more than 1 px at their partner and beside it (EQUATIONS
-/// §5.7). They take a weighted median of disparities around them that would not, if there is any.
-/// medians: as take_filled_medians() of the same map left it. contradicted: working memory.
-/// Identical for any `execution`.
-void mend_contradicted(const Mask& unmatched, const OtherCameraView& other,
-                       const FilledMediansWork& medians, Execution& execution, Mask& contradicted,
-                       DisparityMap& map_px);
+/// A row of the other map: runs that are not matched take the smaller disparity of both their ends,
+/// because what is not matched is mostly background. NaN in a row without matches.
+void copy_seen_row(const OtherCameraView& other, int y, float* seen_px);
 
 }  // namespace vantage
