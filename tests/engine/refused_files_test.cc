@@ -53,10 +53,30 @@ TEST_F(RefusedFiles, HeadersOfImages) {
   const std::string jp2 = "\0\0\0\x0CjP  \r\n\x87\n"s;
   EXPECT_THAT(problem(jp2 + "\0\0\0\1jp2c\0\0\0\0\0\0\0\x20no code stream.."s),
               HasSubstr("its JPEG 2000 codestream has no header"));
-  EXPECT_THAT(problem("P5\n" + std::string(70, '7')), HasSubstr("its header is not text"));
+  struct Refused {
+    std::string bytes;
+    const char* says;
+  };
+  const std::vector<Refused> all = {
+      {"BM"s + std::string(12, '\0') + "\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x21\0"s +
+           std::string(24, '\0'),
+       "33 bits per pixel, expected at most 32"},
+      {"\xFF\xD8\xFF\xD9"s + std::string(8, '\0'), "expected a JPEG frame header and a scan"},
+      {"\x76\x2f\x31\x01\2\0\0\0\0"s, "its EXR header has no data window"},
+      {jp2 + "\0\0\0\4jp2h\0\0\0\0"s, "its JPEG 2000 boxes hold no codestream"},
+      {"\x89PNG\r\n\x1a\n\0\0\0\0IDAT\0\0\0\0"s, "expected one IHDR chunk of 13 bytes"},
+      {"P1\n2 1\n12", "its data at pixel (1, 0) is neither 0 nor 1"},
+      {"P5\n" + std::string(70, '7'), "its header is not text"}};
+  for (const Refused& one : all) {
+    EXPECT_THAT(problem(one.bytes), HasSubstr(one.says));
+  }
   for (const char* end : {"P5\n2 1\n255", "Pf\n1 1\n-1"}) {
     EXPECT_THAT(problem(end), HasSubstr("truncated")) << end;
   }
+  put_text(folder_ / "large", "P5\n");
+  std::filesystem::resize_file(folder_ / "large", std::uintmax_t{1} << 33U);
+  EXPECT_THAT(error_of([&] { read_photograph(folder_ / "large"); }),
+              HasSubstr("has 8589934592 bytes, too many for an image"));
   // Readers of one format say so where they are given another.
   EXPECT_THAT(problem_of(decode_pnm, "P7 1 1"), HasSubstr("is not a PNM file"));
   EXPECT_THAT(problem_of(decode_pfm, "P5 1 1"), HasSubstr("is not a PFM file"));
@@ -71,17 +91,49 @@ TEST_F(RefusedFiles, HeadersOfArrays) {
               HasSubstr("its NPY header is not a Python dictionary"));
   EXPECT_THAT(problem(array("{'descr': '<f4', 'fortran_order': False, 'shape'  }"), "a.npy"),
               HasSubstr("its NPY header has no usable 'shape' entry"));
+  for (const std::string shape : {"(3; 4)", "(3, -4)"}) {
+    const std::string dictionary =
+        "{'descr': '<f4', 'fortran_order': False, 'shape': " + shape + "}";
+    EXPECT_THAT(problem(array(dictionary), "a.npy"),
+                HasSubstr("has shape " + shape + ", expected (height, width)"));
+  }
+  EXPECT_THAT(problem("\x93NUMPY\2\0\xFF\xFF\xFF\x7F"s, "a.npy"),
+              HasSubstr("of 2147483647 bytes is longer than that of a plain array"));
+}
+
+/// With the checksum of the `bytes` at `type` behind them.
+std::string with_checksum(std::string png, std::size_t type, std::size_t bytes) {
+  const std::uint32_t crc = libdeflate_crc32(0, png.data() + type, bytes);
+  for (std::size_t i = 0; i < 4; ++i) {
+    png[type + bytes + i] = static_cast<char>(crc >> (24 - 8 * i));
+  }
+  return png;
+}
+
+TEST_F(RefusedFiles, ChunksOfPng) {
+  constexpr std::size_t kBehindHeader = 33;
+  Image<std::uint8_t> colours(2, 1, 3);
+  colours.fill(9);
+  colours.at(1, 0, 2) = 200;
+  write_photograph(folder_ / "a.png", {std::move(colours)});
+  const auto with_chunk = [&](const std::string& name, const std::string& content) {
+    std::string chunk = std::string(3, '\0') + static_cast<char>(content.size()) + name + content;
+    chunk = with_checksum(chunk + std::string(4, '\0'), 4, 4 + content.size());
+    return text_of("a.png").insert(kBehindHeader, chunk);
+  };
+  EXPECT_THAT(problem(with_chunk("ABCD", "")), HasSubstr("unknown PNG chunk at byte 33"));
+  // Tags beyond the end: as if there were none.
+  EXPECT_EQ(problem(with_chunk("eXIf", "II*\0\xFF\xFF\0\0"s)), "");
+  put_text(folder_ / "transparent", with_chunk("tRNS", "\0\x09\0\x09\0\x09"s));
+  const Photograph read = read_photograph(folder_ / "transparent");
+  const auto& pixels = std::get<Image<std::uint8_t>>(read.pixels);
+  ASSERT_EQ(pixels.channels(), 4);
+  EXPECT_EQ(pixels.at(0, 0, 3), 0);
+  EXPECT_EQ(pixels.at(1, 0, 3), 255);
 }
 
 /// Checksums are right: what is refused is what they protect.
 TEST_F(RefusedFiles, PngOfWrongTypesAndPixels) {
-  const auto with_checksum = [](std::string png, std::size_t type, std::size_t bytes) {
-    const std::uint32_t crc = libdeflate_crc32(0, png.data() + type, bytes);
-    for (std::size_t i = 0; i < 4; ++i) {
-      png[type + bytes + i] = static_cast<char>(crc >> (24 - 8 * i));
-    }
-    return png;
-  };
   write_photograph(folder_ / "a.png", noise<std::uint8_t>(3, 3, 1));
   std::string png = text_of("a.png");
   png[25] = 5;

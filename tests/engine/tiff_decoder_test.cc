@@ -187,6 +187,19 @@ TEST(TiffDecoder, ReadsHalfFloatsAndNegativeNumbers) {
                 [](int x, int y, int) { return value_at(x, y, 0) - 100; });
 }
 
+TEST(TiffDecoder, ZeroMayBeWhite) {
+  expect_values(written_and_read<std::uint8_t>({.photometric = PHOTOMETRIC_MINISWHITE}), 1,
+                [](int x, int y, int) { return 255 - value_at(x, y, 0); });
+  const Page deep{.bits = 16, .photometric = PHOTOMETRIC_MINISWHITE};
+  expect_values(written_and_read<std::uint16_t>(deep), 1,
+                [](int x, int y, int) { return 65535 - value_at(x, y, 0); });
+}
+
+TEST(TiffDecoder, RefusesNumbersOfOtherSizes) {
+  EXPECT_THAT(error_of([] { written_and_read<std::uint32_t>({.bits = 24}); }),
+              HasSubstr("holds values of an unsupported type (24 bits), expected"));
+}
+
 TEST(TiffDecoder, ReadsColourOrTheMeanOfMoreBandsOrTheOneAskedFor) {
   const Page colour{.samples = 5, .photometric = PHOTOMETRIC_RGB, .extra = {0, 0}};
   const Photograph first_three = written_and_read<std::uint8_t>(colour);
