@@ -46,6 +46,13 @@ void declare_metric_options(py::module_& module, const char* call) {
 
 }  // namespace
 
+void require_no_file_options(const RigScale& rig) {
+  if (rig.images_are_rectified) {
+    throw UsageError(
+        "already-rectified is of files, expected Calibration.load(path, already_rectified=True)");
+  }
+}
+
 MetricOptions metric_options(MetricOutput output, MapKind map, const py::dict& keywords) {
   MetricOptions options;
   Settings settings;
@@ -53,10 +60,7 @@ MetricOptions metric_options(MetricOutput output, MapKind map, const py::dict& k
   set_options(settings, keywords);
   options.cloud.validate();
   require_disparity_resolution(options.disparity_resolution_px);
-  if (options.rig.images_are_rectified) {
-    throw UsageError(
-        "already-rectified is of files, expected Calibration.load(path, already_rectified=True)");
-  }
+  require_no_file_options(options.rig);
   return options;
 }
 

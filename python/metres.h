@@ -25,6 +25,9 @@ struct MetricOptions {
 /// The map that is turned: a MatchResult knows its side, of an array it is an option.
 enum class MapKind { kResult, kArray };
 
+/// Throws UsageError for an option that only reading a calibration could follow.
+void require_no_file_options(const RigScale& rig);
+
 /// Reads them from keyword arguments. Throws UsageError.
 MetricOptions metric_options(MetricOutput output, MapKind map, const pybind11::dict& keywords);
 

@@ -327,6 +327,7 @@ class Sequence {
     add_sequence_settings(settings, job);
     set_options(settings, keywords);
     if (calibration_) {
+      require_no_file_options(job.rig);
       (is_unrectified ? job.unrectified : job.calibration) =
           calibration_->file.empty() ? "calibration" : calibration_->file;
     }

@@ -233,6 +233,8 @@ def test_bad_frames(long_sequence):
     ({"kept_outline": 0.5}, "kept-outline has no effect without --calibration"),
     ({"baseline": 0.1}, "baseline has no effect without --focal-length or --calibration"),
     ({"right": None, "stereo": "-", "left": None}, "packing|stereo is -"),
+    ({"calibration": vantage.Calibration.from_focal_length(9, 1, image_size=(128, 96)),
+      "already_rectified": True}, r"expected Calibration.load\(path, already_rectified=True\)"),
 ])
 def test_bad_options(sequence, options, message):
     with pytest.raises(vantage.Error, match=message) as problem:
