@@ -62,14 +62,19 @@ debian_package(program vantage graphics "${late_libraries}"
   "Turns rectified stereo pairs, folders of pairs and stereo videos into
 disparity maps and new views, on all cores of ordinary processors. Results do
 not depend on the number of threads.")
+debian_package(library libvantage0 libs "${late_libraries}"
+  "shared library of the stereo engine Vantage"
+  "Disparity maps and new views of stereo pairs in memory, for programs in any
+language.")
 debian_package(development libvantage-dev libdevel
-  "libtbb-dev, libopencv-dev, libeigen3-dev, libfmt-dev, libhwy-dev, libhwloc-dev, libdeflate-dev, \
+  "libvantage0 (= ${PROJECT_VERSION}), libtbb-dev, libopencv-dev, libeigen3-dev, libfmt-dev, libhwy-dev, libhwloc-dev, libdeflate-dev, \
 libjpeg-dev, libpng-dev, pkg-config, ${late_libraries}"
-  "C++ library of the stereo engine Vantage"
-  "Static libraries, headers and the CMake package Vantage: find_package(Vantage)
-gives the target vantage::engine.")
+  "libraries of the stereo engine Vantage for developers"
+  "Headers, static libraries and CMake packages: find_package(vantage) gives the
+shared library vantage::vantage with a C interface, find_package(Vantage) the
+static vantage::engine, in C++.")
 # What cpack puts into packages; it would build all targets itself, tests among them.
-add_custom_target(vantage_packaged DEPENDS vantage vantage_reference vantage_engine)
+add_custom_target(vantage_packaged DEPENDS vantage vantage_reference vantage_engine vantage_shared)
 if(TARGET vantage_python)
   debian_package(python python3-vantage python
     "python3 (>= ${VANTAGE_PYTHON_VERSION}), \

@@ -56,7 +56,11 @@ class PackagesTest(unittest.TestCase):
     def test_library_has_headers_archives_and_the_cmake_package(self):
         found = files(self.packages["libvantage-dev"])
         self.assertIn("/usr/include/vantage/engine/vantage.h", found)
-        for ending in ("libvantage_engine.a", "/VantageConfig.cmake", "/VantageTargets.cmake"):
+        self.assertIn("/usr/include/vantage/vantage_c.h", found)
+        shared = files(self.packages["libvantage0"])
+        self.assertTrue([path for path in shared if path.endswith("/libvantage.so.0")])
+        for ending in ("libvantage_engine.a", "/VantageConfig.cmake", "/VantageTargets.cmake",
+                       "/vantageConfig.cmake", "/vantage.pc", "/libvantage.so"):
             self.assertTrue([path for path in found if path.endswith(ending)], ending)
         self.assertNotIn("/usr/bin/vantage", found)
 

@@ -74,13 +74,13 @@ if compgen -G "$packages/python3-vantage_*.deb" >/dev/null; then
   use_module 'python3 of the package'
 fi
 
-apt_inside install '/packages/libvantage-dev_*.deb' g++ cmake make
+apt_inside install '/packages/libvantage0_*.deb' '/packages/libvantage-dev_*.deb' g++ cmake make
 mkdir "$root/consumer"
 cp tests/consumer/CMakeLists.txt tests/consumer/main.cc "$root/consumer/"
 inside 'cmake -S /consumer -B /tmp/consumer >/dev/null && cmake --build /tmp/consumer >/dev/null &&
   /tmp/consumer/consumer >/dev/null'
 echo "== a C++ program builds with libvantage-dev and runs"
 
-apt_inside remove vantage libvantage-dev
+apt_inside remove vantage libvantage-dev libvantage0
 inside '! command -v vantage'
 echo "== all is removed again"

@@ -32,6 +32,15 @@ endfunction()
 step("install" ${CMAKE_COMMAND} --install ${VANTAGE_BUILD_DIR} --prefix ${WORK_DIR}/prefix)
 build(consumer ${CONSUMER_SOURCE_DIR})
 step("run the program" ${WORK_DIR}/consumer/consumer)
+if(NOT SANITIZE)
+  build(examples ${CONSUMER_SOURCE_DIR}/../../examples)
+  foreach(example match_in_c match_in_cpp)
+    step("run ${example}" ${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${WORK_DIR}/examples/${example})
+  endforeach()
+  file(GLOB_RECURSE module ${WORK_DIR}/prefix/vantage.pc)
+  step("build with pkg-config" sh -c "cc -o ${WORK_DIR}/example ${CONSUMER_SOURCE_DIR}/../../examples/match.c \
+    $(pkg-config --cflags --libs ${module}) -lm")
+endif()
 step("run the installed vantage" ${WORK_DIR}/prefix/bin/vantage info)
 
 # A sanitizer sees nothing more in the headers alone.
