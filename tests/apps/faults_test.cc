@@ -257,6 +257,25 @@ INSTANTIATE_TEST_SUITE_P(Commands, SlowFaults,
                          testing::Range<std::size_t>(0, faulty_commands().size()),
                          [](const auto& one) { return faulty_commands()[one.param].name; });
 
+class SlowJoin : public RunTest {};
+
+/// Videos ended before a segment that could not be read again.
+TEST_F(SlowJoin, SegmentsThatCannotBeReadAreNotLeftOut) {
+  const std::string out = folder_ / "out";
+  const Words command = arguments(
+      out, words("--save preview --video preview --chunk-frames 10 --method ssd --quiet"));
+  const std::string segment = out + "/.vantage/segments/preview/000010-000019.mp4";
+  const int reads = calls_of(command, segment).counts["read"];
+  const FolderContent expected = results_in(out);
+  EXPECT_GT(reads, 5);
+  for (int call = 1; call <= reads; ++call) {
+    fs::remove_all(out);
+    const ProcessResult result =
+        run_vantage(command, fault_at("FAIL", "read:" + std::to_string(call), segment));
+    EXPECT_TRUE(result.exit_code == 1 || same_files(results_in(out), expected)) << call;
+  }
+}
+
 class OutOfMemory : public RunTest {};
 
 /// What holds a frame in flight is made when the first ones are read.
