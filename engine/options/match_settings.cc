@@ -29,8 +29,8 @@ void add_method_settings(Settings& settings, MatchOptions& options) {
   Setting& preset = settings.choice(
       "preset", options.preset, names_of(MatchPreset{}),
       "Parameters for photographs, shown by --print-config:\nrealtime  0.35 times the time of "
-      "balanced, 8.2 % bad pixels\nbalanced  the default, 7.5 % bad pixels (mean of 18 "
-      "scenes)\nquality   1.8 times the time of balanced, 7.4 % bad pixels\nauto: balanced; with "
+      "balanced, 8.2 % bad pixels\nbalanced  the default, 7.4 % bad pixels (mean of 18 "
+      "scenes)\nquality   1.8 times the time of balanced, 7.3 % bad pixels\nauto: balanced; with "
       "--method, --aggregate, --disparities-y: none");
   preset.set = [set = std::move(preset.set)](const SettingValue& value) {
     if (is_word(value, "fast")) {

@@ -86,25 +86,28 @@ T* inside(Image<T>& framed, int y) {
 
 }  // namespace
 
-void take_filled_medians(const Mask& unmatched, const Photograph& photograph,
-                         const kernels::FilledMedianGrid& grid, Execution& execution,
-                         FilledMediansWork& work, DisparityMap& map_px, const TileMask* tiles) {
+void frame_photograph(const Photograph& photograph, Execution& execution, FilledMediansWork& work) {
+  std::visit(
+      [&](const auto& image) {
+        frame(
+            image.width(), image.height(), kernels::kFilledPixelBytes, std::uint8_t{0},
+            [&](int y, std::uint8_t* pixels) {
+              write_pixels(image.row(y), image.width(), image.channels(), pixels);
+            },
+            execution, work.pixels);
+      },
+      photograph.pixels);
+}
+
+void take_filled_medians(const Mask& unmatched, const kernels::FilledMedianGrid& grid,
+                         Execution& execution, FilledMediansWork& work, DisparityMap& map_px,
+                         const TileMask* tiles) {
   const int width = map_px.width();
   const int height = map_px.height();
   frame(
       width, height, 1, std::numeric_limits<float>::quiet_NaN(),
       [&](int y, float* values) { std::copy_n(map_px.row(y), width, values); }, execution,
       work.before);
-  std::visit(
-      [&](const auto& image) {
-        frame(
-            width, height, kernels::kFilledPixelBytes, std::uint8_t{0},
-            [&](int y, std::uint8_t* pixels) {
-              write_pixels(image.row(y), width, image.channels(), pixels);
-            },
-            execution, work.pixels);
-      },
-      photograph.pixels);
   execution.for_each_row(height, [&](int y) {
     for_each_run_in_row(tiles, width, y, [&](scheduler::Range columns) {
       kernels::take_filled_medians_row(

@@ -28,14 +28,16 @@ inline std::size_t held_bytes(const FilledMediansWork& work) {
   return held_bytes(work.before) + held_bytes(work.pixels);
 }
 
+/// Brings a photograph into the format of the medians, for the calls below and pixel().
+void frame_photograph(const Photograph& photograph, Execution& execution, FilledMediansWork& work);
+
 /// Replaces filled pixels (≠ 0 in `unmatched`) by the weighted median of the disparities around
 /// them; pixels of similar colour weigh more (kernels/filled_median). Constant-depth filling
 /// decides for each row alone; the median combines rows and follows the image's outlines.
-/// `photograph` is the map's own; all have one size. grid: at most
-/// the default one. tiles: the only ones to change; null: all. Identical for any `execution`.
-void take_filled_medians(const Mask& unmatched, const Photograph& photograph,
-                         const kernels::FilledMedianGrid& grid, Execution& execution,
-                         FilledMediansWork& work, DisparityMap& map_px,
+/// work: after frame_photograph() of the map's own photograph; all have one size. grid: at most the
+/// default one. tiles: the only ones to change; null: all. Identical for any `execution`.
+void take_filled_medians(const Mask& unmatched, const kernels::FilledMedianGrid& grid,
+                         Execution& execution, FilledMediansWork& work, DisparityMap& map_px,
                          const TileMask* tiles = nullptr);
 
 }  // namespace vantage

@@ -76,10 +76,12 @@ const Mask& left_out_of(const MapToRefine* map) {
   return map != nullptr && map->image != nullptr ? map->image->left_out : none;
 }
 
-/// Samples of medians, in columns of the map.
-kernels::FilledMedianGrid median_grid(const MapToRefine& map) {
-  return map.pixels_per_column == 1 ? kernels::FilledMedianGrid{}
-                                    : kernels::FilledMedianGrid{.count = 5, .step_px = 2};
+/// Samples of medians, in columns of the map. What surfaces fill needs to be smoothed, not found.
+kernels::FilledMedianGrid median_grid(const MapToRefine& map, bool is_filled_by_surfaces) {
+  if (map.pixels_per_column != 1) {
+    return {.count = 5, .step_px = 2};
+  }
+  return {.step_px = is_filled_by_surfaces ? 2 : kernels::kFilledMedianStepPx};
 }
 
 SurfaceEnergy surface_energy(Fill fill) {
@@ -137,6 +139,11 @@ void fill(const RefinementOptions& options, const MapToRefine& map, bool is_chec
     keep_visible_unmatched(matched.disparity_px.view(), matched.unmatched, map.side,
                            map.pixels_per_column, execution, work.uniform);
   }
+  const bool is_in_rows = matched.disparity_y_px.empty();
+  const bool takes_surfaces = is_checked && is_in_rows && options.fill == Fill::kSurfaces;
+  if (takes_medians(options.fill)) {
+    frame_photograph(*map.image, execution, work.filled_medians);
+  }
   for (DisparityMap* component_px : {&matched.disparity_px, &matched.disparity_y_px}) {
     if (component_px->empty()) {
       continue;
@@ -150,19 +157,19 @@ void fill(const RefinementOptions& options, const MapToRefine& map, bool is_chec
       unmatched = &work.rest;
     }
     fill_unmatched(*unmatched, map.side, options.fill, execution, *component_px);
+    if (is_in_rows && takes_planes(options.fill, map.pixels_per_column)) {
+      fill_border_planes(*unmatched, map.side, map.pixels_per_column, map.search, execution,
+                         *component_px);
+    }
+    if (takes_surfaces) {
+      fill_by_surfaces(*unmatched, other_view(map, work), work.filled_medians, map.search,
+                       execution, work.surface_fill, *component_px);
+    }
     if (takes_medians(options.fill)) {
-      take_filled_medians(*unmatched, *map.image, median_grid(map), execution, work.filled_medians,
-                          *component_px,
+      take_filled_medians(*unmatched, median_grid(map, takes_surfaces), execution,
+                          work.filled_medians, *component_px,
                           map.kept != nullptr && !is_canonical ? &map.kept->changed() : nullptr);
     }
-  }
-  if (takes_planes(options.fill, map.pixels_per_column) && matched.disparity_y_px.empty()) {
-    fill_border_planes(matched.unmatched, map.side, map.pixels_per_column, map.search, execution,
-                       matched.disparity_px);
-  }
-  if (is_checked && options.fill == Fill::kSurfaces && matched.disparity_y_px.empty()) {
-    fill_by_surfaces(matched.unmatched, other_view(map, work), work.filled_medians, map.search,
-                     execution, work.surface_fill, matched.disparity_px);
   }
   if (map.kept != nullptr) {
     if (!is_canonical) {  // whose regions reach over many tiles

@@ -12,11 +12,11 @@ namespace vantage {
 
 /// How unmatched pixels are filled.
 enum class Fill {
-  kConstant,   ///< the background depth next to them (EQUATIONS §5.4)
-  kLinear,     ///< interpolated where the disparities on both sides nearly agree, else constant
-  kMedian,     ///< constant, then the median of similar pixels nearby (filled_medians)
-  kPlanes,     ///< median; the band that the other image never shows: planes (border_planes)
-  kSurfaces,   ///< as kPlanes; hidden pixels by the planes of surfaces around (surface_fill)
+  kConstant,  ///< the background depth next to them (EQUATIONS §5.4)
+  kLinear,    ///< interpolated where the disparities on both sides nearly agree, else constant
+  kMedian,    ///< constant, then the median of similar pixels nearby (filled_medians)
+  kPlanes,  ///< the band that the other image never shows: planes (border_planes), then as kMedian
+  kSurfaces,   ///< the same; before medians, hidden pixels: surfaces around (surface_fill)
   kCanonical,  ///< regions without texture: a membrane between their ends; others: as kMedian
   kThinPlate,  ///< the same with a thin plate
   kNone,       ///< unknown

@@ -23,7 +23,7 @@ inline std::size_t held_bytes(const SurfaceFillWork& work) {
 
 /// Fills unmatched pixels (≠ 0 in `unmatched`) again, by the surfaces around them, where these
 /// agree and the other camera does not see the pixel, or would see through its value (EQUATIONS
-/// §5.7); others keep their values. medians: as take_filled_medians() of the same map left it.
+/// §5.7); others keep their values. medians: after frame_photograph() of the map's own photograph.
 /// search: values stay within it. Identical for any `execution`.
 void fill_by_surfaces(const Mask& unmatched, const OtherCameraView& other,
                       const FilledMediansWork& medians, DisparityRange search, Execution& execution,

@@ -53,8 +53,8 @@ constexpr float tile_centre(int tile) {
 }
 
 /// Fits a plane to the matched pixels (0 in `unmatched`) of every tile and of those beside it that
-/// go on (EQUATIONS §5.7). medians: as take_filled_medians() of the same map left it. Identical for
-/// any `execution`.
+/// go on (EQUATIONS §5.7). medians: after frame_photograph() of the map's own
+/// photograph. Identical for any `execution`.
 void find_surface_tiles(const Mask& unmatched, const DisparityMap& map_px,
                         const FilledMediansWork& medians, Execution& execution,
                         SurfaceTiles& surfaces);

@@ -59,7 +59,8 @@ TEST(FilledMedians, RowsThatWereFilledAloneFollowTheOutlines) {
   fill_unmatched(disc.unmatched, Side::kLeft, Fill::kMedian, execution(), disc.map);
   const int before = wrong(disc.map);
   FilledMediansWork work;
-  take_filled_medians(disc.unmatched, photograph, {}, execution(), work, disc.map);
+  frame_photograph(photograph, execution(), work);
+  take_filled_medians(disc.unmatched, {}, execution(), work, disc.map);
   EXPECT_GT(before, 100);
   EXPECT_LT(wrong(disc.map), before / 4);
 }
@@ -75,7 +76,8 @@ TEST(FilledMedians, MatchedPixelsStayAndExecutionsAgree) {
   DisparityMap serial = noisy.copy();
   FilledMediansWork work;
   Execution one({.executor = scheduler::ExecutorKind::kSerial});
-  take_filled_medians(disc.unmatched, photograph, {}, one, work, serial);
+  frame_photograph(photograph, one, work);
+  take_filled_medians(disc.unmatched, {}, one, work, serial);
   int changed = 0;
   for (const auto [x, y] : positions_of(kWidth, kHeight)) {
     changed += serial.at(x, y) != noisy.at(x, y) ? 1 : 0;
@@ -85,7 +87,8 @@ TEST(FilledMedians, MatchedPixelsStayAndExecutionsAgree) {
   }
   EXPECT_GT(changed, 100);
   Execution three({.threads = 3, .executor = scheduler::ExecutorKind::kOpenMp});
-  take_filled_medians(disc.unmatched, photograph, {}, three, work, noisy);
+  frame_photograph(photograph, three, work);
+  take_filled_medians(disc.unmatched, {}, three, work, noisy);
   EXPECT_TRUE(identical(serial, noisy));
 }
 
@@ -103,7 +106,8 @@ TEST(FilledMedians, DepthsOfPhotographsAgree) {
     const auto filled = [&](const Photograph& photograph) {
       DisparityMap map = disc.map.copy();
       FilledMediansWork work;
-      take_filled_medians(disc.unmatched, photograph, {}, execution(), work, map);
+      frame_photograph(photograph, execution(), work);
+      take_filled_medians(disc.unmatched, {}, execution(), work, map);
       return map;
     };
     const DisparityMap expected = filled({bytes.copy()});

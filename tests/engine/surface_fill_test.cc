@@ -127,9 +127,7 @@ struct Plain {
     other.map_px = std::as_const(other_px).view();
     other.matched.resize((kWidth + 63) / 64, kHeight);
     other.matched.fill(~std::uint64_t{0});
-    Mask nothing(kWidth, kHeight);
-    nothing.fill(0);
-    take_filled_medians(nothing, photograph, {}, execution(), medians, map_px);
+    frame_photograph(photograph, execution(), medians);
   }
 
   DisparityMap filled(Execution& execution = vantage::execution()) {
@@ -190,7 +188,7 @@ TEST(SurfaceFill, SmallMapsAreTaken) {
     other.matched.resize(1, height);
     other.matched.fill(0);
     FilledMediansWork medians;
-    take_filled_medians(unmatched, Photograph{std::move(grey)}, {}, execution(), medians, map_px);
+    frame_photograph(Photograph{std::move(grey)}, execution(), medians);
     SurfaceFillWork work;
     fill_by_surfaces(unmatched, other, medians, kSearch, execution(), work, map_px);
     for (const auto [x, y] : positions_of(width, height)) {
