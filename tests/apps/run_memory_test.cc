@@ -104,7 +104,8 @@ class SlowRunMemory : public RunTest {
 TEST_F(SlowRunMemory, StaysFlat) {
   for (const auto& outputs : {kImageOutputs, joined(kVideoOutputs, {"--temporal-prior", "1"})}) {
     const Words common = arguments(out_, joined(outputs, {"--in-flight", "4"}));
-    const double few = report_of(joined(common, {"--frames", "0-49"}))["peak_memory_bytes"];
+    // The allocator takes some more in the first hundred frames, for blocks of all threads.
+    const double few = report_of(joined(common, {"--frames", "0-199"}))["peak_memory_bytes"];
     const double many = report_of(common)["peak_memory_bytes"];
     EXPECT_LT(many, 1.05 * few) << many << " bytes for " << kMany << " frames";
   }
