@@ -182,7 +182,7 @@ std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::str
     return images_of_model(parse_nerf_transforms(text, poses.string(), size_of), images, poses);
   }
   const std::vector<fs::path> files = files_of(images);
-  const bool is_opencv = has_opencv_poses(text);
+  const bool is_opencv = has_opencv_poses(text, poses.string());
   if (!is_opencv && intrinsics.empty()) {
     throw UsageError(
         fmt::format("--poses is '{}', a trajectory without a camera; expected "

@@ -102,7 +102,7 @@ Json json_of(const StoredEdge& stored) {
 void read_posed_values(const Json& json, const std::string& name, StoredScene& scene) {
   const int vertices = static_cast<int>(scene.images.size());
   const auto vertex = [&](const Json& number) {
-    const int value = number.get<int>();
+    const int value = int_of(number);
     if (value < 0 || value >= vertices) {
       throw Error(fmt::format("{}: an edge is out of range", name));
     }
@@ -143,8 +143,8 @@ void add_posed_values(const StoredScene& scene, Json& json) {
 
 StoredEdge edge_of(const Json& json, int vertices, const std::string& name) {
   StoredEdge stored;
-  stored.edge = {.first = json.at("first").get<int>(),
-                 .second = json.at("second").get<int>(),
+  stored.edge = {.first = int_of(json.at("first")),
+                 .second = int_of(json.at("second")),
                  .is_vertical = json.at("direction").get<std::string>() == "y",
                  .length = json.at("length").get<double>(),
                  .slope = json.at("slope").get<double>()};
@@ -153,8 +153,8 @@ StoredEdge edge_of(const Json& json, int vertices, const std::string& name) {
       !(stored.edge.length > 0) || !(std::abs(stored.edge.slope) <= 1)) {
     throw Error(fmt::format("{}: an edge is out of range", name));
   }
-  stored.disparities = {.min = json.at("disparities").at(0).get<int>(),
-                        .max = json.at("disparities").at(1).get<int>()};
+  stored.disparities = {.min = int_of(json.at("disparities").at(0)),
+                        .max = int_of(json.at("disparities").at(1))};
   stored.matched_share = json.at("matched_share").get<std::array<double, 2>>();
   if (!json.at("rectification_error_px").is_null()) {
     stored.rectification_error_px = json.at("rectification_error_px").get<double>();
@@ -170,7 +170,7 @@ StoredEdge edge_of(const Json& json, int vertices, const std::string& name) {
 }
 
 StoredScene scene_of(const Json& json, const std::string& name) {
-  const int format = json.at("format").get<int>();
+  const int format = int_of(json.at("format"));
   if (format != kSceneFormat && format != kPosedFormat) {
     throw Error(fmt::format("{}: is of format {}, expected {} or {}", name,
                             quoted_json(json.at("format")), kSceneFormat, kPosedFormat));
@@ -178,8 +178,8 @@ StoredScene scene_of(const Json& json, const std::string& name) {
   StoredScene scene;
   scene.settings = json.at("settings").dump();
   scene.unit_length = json.at("unit_length").get<double>();
-  scene.width_px = json.at("size").at(0).get<int>();
-  scene.height_px = json.at("size").at(1).get<int>();
+  scene.width_px = int_of(json.at("size").at(0));
+  scene.height_px = int_of(json.at("size").at(1));
   if (json.contains("white_level")) {
     scene.white_level = json.at("white_level").get<double>();
     if (!(*scene.white_level > 0)) {
@@ -188,7 +188,7 @@ StoredScene scene_of(const Json& json, const std::string& name) {
   }
   scene.reading.turns_upright = json.value("orientation", "upright") != "stored";
   if (json.contains("band")) {
-    scene.reading.band = json.at("band").get<int>();
+    scene.reading.band = int_of(json.at("band"));
   }
   for (const Json& image : json.at("images")) {
     scene.images.push_back(

@@ -138,6 +138,14 @@ SizedCamera camera_of_entries(const CalibrationNames& names, const std::string& 
   return sized;
 }
 
+CalibrationEntries entries_in(std::string_view text, const std::string& file) {
+  try {
+    return entries_of(text);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", file, error.what()));
+  }
+}
+
 }  // namespace
 
 SizedCamera parse_intrinsics(std::string_view text, const std::string& file,
@@ -160,14 +168,14 @@ SizedCamera read_intrinsics(const std::filesystem::path& file, const IntrinsicsC
   return parse_intrinsics(read_file_text(file), file.string(), choice);
 }
 
-bool has_opencv_poses(std::string_view text) {
-  const CalibrationEntries entries = entries_of(text);
+bool has_opencv_poses(std::string_view text, const std::string& file) {
+  const CalibrationEntries entries = entries_in(text, file);
   return find(entries, {kPoseNames[0], kPoseNames[1]}) != nullptr;
 }
 
 std::vector<CameraPose> parse_opencv_poses(std::string_view text, const std::string& file) {
   constexpr std::size_t kNumbers = 6;
-  const CalibrationEntries entries = entries_of(text);
+  const CalibrationEntries entries = entries_in(text, file);
   const CalibrationEntry* entry = find(entries, {kPoseNames[0], kPoseNames[1]});
   if (entry == nullptr) {
     throw Error(

@@ -31,8 +31,9 @@ SizedCamera parse_intrinsics(std::string_view text, const std::string& file,
 /// parse_intrinsics() of a file. Throws Error, also when it cannot be read.
 SizedCamera read_intrinsics(const std::filesystem::path& file, const IntrinsicsChoice& choice = {});
 
-/// Whether a text is OpenCV's YAML or XML with extrinsic_parameters.
-bool has_opencv_poses(std::string_view text);
+/// Whether a text is OpenCV's YAML or XML with extrinsic_parameters. Throws Error, which names
+/// `file`, if it is neither these nor JSON.
+bool has_opencv_poses(std::string_view text, const std::string& file);
 /// Parses the poses that OpenCV's calibration writes: extrinsic_parameters, N×6, rows rx ry rz tx
 /// ty tz (rotation vector, translation), world to camera. Throws Error naming `file`.
 std::vector<CameraPose> parse_opencv_poses(std::string_view text, const std::string& file);

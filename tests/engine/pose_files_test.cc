@@ -217,8 +217,10 @@ TEST(IntrinsicsFile, OpenCvPosesAreRotationVectors) {
   const std::string text =
       "%YAML:1.0\nextrinsic_parameters: !!opencv-matrix\n   rows: 2\n   cols: 6\n   dt: d\n"
       "   data: [ 0., -1.57079632679, 0., 3., -2., -1.,\n       0., 0., 0., 4., 5., 6. ]\n";
-  EXPECT_TRUE(has_opencv_poses(text));
-  EXPECT_FALSE(has_opencv_poses("1 0 0 0 0 0 0 1\n"));
+  EXPECT_TRUE(has_opencv_poses(text, "poses.yml"));
+  EXPECT_FALSE(has_opencv_poses("1 0 0 0 0 0 0 1\n", "poses.txt"));
+  EXPECT_THAT(error_of([] { (void)has_opencv_poses("{{", "poses.json"); }),
+              StartsWith("poses.json: JSON:1:2: "));
   const std::vector<CameraPose> poses = parse_opencv_poses(text, "camera.yml");
   ASSERT_EQ(poses.size(), 2U);
   expect_looks_to_the_right(poses[0]);

@@ -31,7 +31,7 @@ void read_calibration(Bytes bytes) {
 
 void read_one_camera(Bytes bytes) {
   const std::string text = text_of(bytes);
-  if (has_opencv_poses(text)) {
+  if (has_opencv_poses(text, "input")) {
     (void)parse_opencv_poses(text, "input");
   }
   (void)parse_intrinsics(text, "input", {.kitti_camera = 2}).scaled_to({320, 240});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "engine/error.h"
@@ -76,6 +77,12 @@ Json parse_json(std::string_view text, const std::string& name) {
 
 Json read_json_file(const std::filesystem::path& file) {
   return parse_json(read_file_text(file), file.string());
+}
+
+int int_of(const Json& json) {
+  using Limits = std::numeric_limits<int>;
+  const auto value = json.get_ref<const Json::number_integer_t&>();
+  return static_cast<int>(std::clamp<Json::number_integer_t>(value, Limits::min(), Limits::max()));
 }
 
 std::string quoted_json(const Json& value) {

@@ -15,6 +15,9 @@ nlohmann::ordered_json parse_json(std::string_view text, const std::string& name
 /// parse_json() of a whole file. Throws Error also when it cannot be read.
 nlohmann::ordered_json read_json_file(const std::filesystem::path& file);
 
+/// Throws nlohmann's exceptions unless it is an integer; one that is no int becomes the nearest.
+int int_of(const nlohmann::ordered_json& json);
+
 /// quotable() of a value: strings in '', everything else as JSON.
 std::string quoted_json(const nlohmann::ordered_json& value);
 

@@ -30,7 +30,7 @@ int count_of(const Json& json) {
 }
 
 Json range_json(FrameRange frames) { return Json::array({frames.first, frames.end}); }
-FrameRange range_of(const Json& json) { return {json.at(0).get<int>(), json.at(1).get<int>()}; }
+FrameRange range_of(const Json& json) { return {int_of(json.at(0)), int_of(json.at(1))}; }
 
 Json comfort_json(const FrameComfort& comfort) {
   Json json = {{"size", {comfort.width_px, comfort.height_px}},
@@ -50,10 +50,10 @@ Json comfort_json(const FrameComfort& comfort) {
 
 FrameComfort comfort_of(const Json& json) {
   FrameComfort comfort;
-  const auto number = [](const Json& list, std::size_t i) { return list.at(i).get<int>(); };
+  const auto number = [](const Json& list, std::size_t i) { return int_of(list.at(i)); };
   comfort.width_px = number(json.at("size"), 0);
   comfort.height_px = number(json.at("size"), 1);
-  comfort.matched = json.at("matched").get<int>();
+  comfort.matched = int_of(json.at("matched"));
   json.at("disparity").get_to(comfort.disparity);
   for (std::size_t i = 0; i < comfort.borders.size(); ++i) {
     const Json& border = json.at("borders").at(i);
@@ -144,8 +144,11 @@ JournalRecord record_in(const Json& json) {
     return SegmentRecord{range_of(json.at("segment")), files_in(json)};
   }
   if (json.contains("joined")) {
-    return JoinRecord{range_of(json.at("joined")), json.value("skipped", std::vector<int>()),
-                      files_in(json)};
+    JoinRecord record{range_of(json.at("joined")), {}, files_in(json)};
+    for (const Json& frame : json.value("skipped", Json::array())) {
+      record.skipped.push_back(int_of(frame));
+    }
+    return record;
   }
   if (json.contains("reported")) {
     return ReportRecord{range_of(json.at("reported")), files_in(json)};
@@ -249,7 +252,7 @@ std::string text_of(const RunIdentity& identity) {
 RunIdentity identity_of(const std::string& text, const std::filesystem::path& file) {
   try {
     const Json json = parse_json(text, file.string());
-    if (json.at("format").get<int>() != kJournalFormat) {
+    if (int_of(json.at("format")) != kJournalFormat) {
       throw Error(
           fmt::format("{}: has format {} (written by Vantage {}), expected {}; finish the run with "
                       "that version, or start again with `overwrite`",

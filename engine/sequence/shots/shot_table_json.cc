@@ -33,8 +33,8 @@ Json json_of(const Shot& shot) {
 
 Shot shot_of_json(const Json& json) {
   Shot shot;
-  shot.first_frame = json.at("first_frame").get<int>();
-  shot.end_frame = json.at("end_frame").get<int>();
+  shot.first_frame = int_of(json.at("first_frame"));
+  shot.end_frame = int_of(json.at("end_frame"));
   for (std::size_t c = 0; c < shot.intensity.size(); ++c) {
     const Json& fit = json.at("intensity").at(c);
     shot.intensity[c] = {.offset = fit.at("offset").get<double>(),
@@ -43,7 +43,7 @@ Shot shot_of_json(const Json& json) {
   shot.preview_range = {json.at("preview_range").at(0).get<float>(),
                         json.at("preview_range").at(1).get<float>()};
   if (json.contains("search")) {
-    shot.search = {json.at("search").at(0).get<int>(), json.at("search").at(1).get<int>()};
+    shot.search = {int_of(json.at("search").at(0)), int_of(json.at("search").at(1))};
   }
   return shot;
 }
