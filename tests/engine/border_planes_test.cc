@@ -62,7 +62,7 @@ TEST(BorderPlanes, WhatIsNoPlaneKeepsItsFill) {
   EXPECT_TRUE(identical(map.disparity_px, before));
 }
 
-TEST(BorderPlanes, RefinementTakesThemOnTopOfTheMedians) {
+TEST(BorderPlanes, RefinementTakesThemBeforeTheMedians) {
   Image<std::uint8_t> grey(kWidth, kHeight, 1);
   grey.fill(90);
   const Photograph photograph{std::move(grey)};
@@ -80,9 +80,12 @@ TEST(BorderPlanes, RefinementTakesThemOnTopOfTheMedians) {
                 [](std::string_view) {});
     return std::move(matched.disparity_px);
   };
-  DisparityMap expected = refined(Fill::kMedian);
-  fill_border_planes(banded_map(slanted_px).unmatched, Side::kLeft, 1, kSearch, execution(),
-                     expected);
+  const MatchedMap banded = banded_map(slanted_px);
+  DisparityMap expected = refined(Fill::kConstant);
+  fill_border_planes(banded.unmatched, Side::kLeft, 1, kSearch, execution(), expected);
+  FilledMediansWork medians;
+  frame_photograph(photograph, execution(), medians);
+  take_filled_medians(banded.unmatched, {}, execution(), medians, expected);
   const DisparityMap planes = refined(Fill::kPlanes);
   EXPECT_TRUE(identical(planes, expected));
   EXPECT_FALSE(identical(planes, refined(Fill::kMedian)));
