@@ -10,7 +10,7 @@ namespace vantage::apps {
 
 /// Prints remarks of the engine on stderr, unless that is quiet, and adds them to the report.
 void tell_remarks(std::span<const Remark> remarks, const CommonOptions& common, RunReport& report);
-/// The same for thread_remarks().
+/// Prints thread_remarks() of the execution like tell_remarks(), and adds them to the report.
 void tell_threads(const Execution& execution, const CommonOptions& common, RunReport& report);
 /// The same for those of a match, and what its map is worth (`results.map`); adds its stages.
 void tell_match(const MatchReport& match, const CommonOptions& common, RunReport& report);

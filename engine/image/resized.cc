@@ -32,7 +32,8 @@ struct Share {
   float weight;
 };
 
-/// Of all pixels of a row or column, in their order.
+/// For one axis: how much each of the `given` pixels adds to each of the `wanted` ones, sorted by
+/// target.
 std::vector<Share> shares_of(int given, int wanted) {
   constexpr double kNothing = 1e-3;
   const double step = step_of(given, wanted);

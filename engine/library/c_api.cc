@@ -16,12 +16,12 @@
 #include "engine/image/white_level.h"
 #include "engine/io/images/opencv_setup.h"
 #include "engine/io/images/scene_mask.h"
-#include "engine/rectification/rows/row_correction.h"
-#include "engine/rectification/rows/row_remarks.h"
-#include "engine/synthesis/view_renderer.h"
 #include "engine/library/handles.h"
 #include "engine/library/pictures.h"
 #include "engine/library/vantage_c.h"
+#include "engine/rectification/rows/row_correction.h"
+#include "engine/rectification/rows/row_remarks.h"
+#include "engine/synthesis/view_renderer.h"
 
 namespace vantage {
 namespace {
@@ -91,7 +91,8 @@ void match_pair(const vantage_matcher& matcher, vantage_pair& result) {
   std::ranges::move(report.remarks, std::back_inserter(result.remarks));
 }
 
-/// Of an image as it was given.
+/// The map of one image, in the pixels of the image that the caller gave. `moved` holds it if it
+/// had to be made.
 const MatchedMap& map_of(const vantage_pair& pair, vantage_side side, MatchedMap& moved) {
   if (side != VANTAGE_LEFT && side != VANTAGE_RIGHT) {
     throw UsageError(fmt::format("side is {}, expected 0 or 1", static_cast<int>(side)));

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "engine/execution.h"
+#include "engine/library/vantage_c.h"
 #include "engine/matching/options/match_options.h"
 #include "engine/matching/pair_matcher.h"
 #include "engine/rectification/rows/row_field.h"
 #include "engine/remark.h"
 #include "engine/synthesis/pair_with_maps.h"
 #include "engine/synthesis/synthesis_options.h"
-#include "engine/library/vantage_c.h"
 
 /// What can be set for a matcher, as texts NAME=VALUE.
 struct MatcherOptions {

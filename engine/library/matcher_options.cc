@@ -3,13 +3,13 @@
 #include <string>
 
 #include "engine/error.h"
+#include "engine/library/handles.h"
 #include "engine/options/execution_settings.h"
 #include "engine/options/match_settings.h"
 #include "engine/options/nearest_name.h"
 #include "engine/options/pair_source_settings.h"
 #include "engine/options/settings.h"
 #include "engine/options/synthesis_settings.h"
-#include "engine/library/handles.h"
 
 MatcherOptions::MatcherOptions(const std::vector<std::string_view>& texts)
     : match(vantage::options_with_found_range()) {

@@ -7,7 +7,8 @@
 
 namespace vantage {
 
-/// Of the length of a gradient, ≥ 0: longer than `low` may be an edge, longer than `high` is one.
+/// Limits of the length of a gradient, ≥ 0. A pixel above `high` is an edge; one above `low` is an
+/// edge if it is connected to such a pixel.
 struct EdgeThresholds {
   int low = 0;
   int high = 0;

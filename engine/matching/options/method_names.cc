@@ -116,7 +116,7 @@ const EnumNames<Fill>& names_of(Fill /*type*/) {
   static const EnumNames<Fill> names = {
       {"constant", Fill::kConstant},    {"linear", Fill::kLinear},
       {"median", Fill::kMedian},        {"planes", Fill::kPlanes},
-      {"surfaces", Fill::kSurfaces},      {"canonical", Fill::kCanonical},
+      {"surfaces", Fill::kSurfaces},    {"canonical", Fill::kCanonical},
       {"thin-plate", Fill::kThinPlate}, {"none", Fill::kNone}};
   return names;
 }

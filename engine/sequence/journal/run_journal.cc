@@ -74,8 +74,8 @@ void remove_whole(const fs::path& path) {
 }
 
 /// Begins the run anew in a folder with records of another one. A description says first that they
-/// do not count, so that whatever interrupts this leaves one run or the other. Throws when a process
-/// works on a part of the run.
+/// do not count, so that whatever interrupts this leaves one run or the other. Throws when a
+/// process works on a part of the run.
 void replace_run(const fs::path& folder, RunIdentity identity) {
   const std::vector<fs::path> entries = entries_of(folder);
   std::deque<FileDescriptor> locks;  // held until all is removed
