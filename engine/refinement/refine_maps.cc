@@ -76,7 +76,8 @@ const Mask& left_out_of(const MapToRefine* map) {
   return map != nullptr && map->image != nullptr ? map->image->left_out : none;
 }
 
-/// Samples of medians, in columns of the map. What surfaces fill needs to be smoothed, not found.
+/// Samples of medians, in columns of the map. Values that surfaces gave need smoothing only: the
+/// samples are nearer.
 kernels::FilledMedianGrid median_grid(const MapToRefine& map, bool is_filled_by_surfaces) {
   if (map.pixels_per_column != 1) {
     return {.count = 5, .step_px = 2};
