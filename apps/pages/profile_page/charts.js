@@ -133,7 +133,8 @@ const overlap = (a, b) =>
 /// The box for a text beside a disc, clear of the boxes in `taken` and within `area`; farther away
 /// until there is room, and if there is none, where it covers least.
 function placeLabel(text, [x, y], radius, taken, area) {
-  const [width, height] = [textWidth(text), 1.25 * TEXT_SIZE];
+  // A browser may draw a text up to a pixel wider than its canvas measures it.
+  const [width, height] = [textWidth(text) + 2, 1.25 * TEXT_SIZE];
   let best = null;
   let minCovered = Infinity;
   for (let ring = 0; ring < 14; ++ring) {
