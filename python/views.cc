@@ -2,8 +2,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -52,21 +50,6 @@ void rectify_pair(const StereoCalibration& calibration, const RectificationOptio
     read.rectifier.apply(read.left, Side::kLeft, pair.left, execution);
     read.rectifier.apply(read.right, Side::kRight, pair.right, execution);
   }
-}
-
-/// Rows as `vantage synth` corrects them. Views are of the corrected right image.
-void correct_pair(const MatchOptions& options, Execution& execution, PairWithMaps& pair,
-                  std::vector<Remark>& remarks) {
-  const RowCheck check = check_rows(pair.left, pair.right, &execution);
-  if (check.pays()) {
-    Photograph corrected;
-    correct_rows(pair.right, check.rows->field, corrected, execution);
-    pair.right = std::move(corrected);
-    follow_corrected_rows(check.rows->field, execution, pair);
-  }
-  std::ranges::move(row_remarks(check, {.is_corrected = check.pays(),
-                                        .expects_negative = expects_negative_disparities(options)}),
-                    std::back_inserter(remarks));
 }
 
 void require_size(const DisparityMap& map, const Photograph& image, const char* name) {
@@ -136,7 +119,7 @@ py::list synthesize(const py::object& left, const py::object& right, const py::o
       require_size(pair.maps.right.disparity_px, pair.right, "right_disparity");
     }
     if (setup.rows == RowMode::kAuto) {
-      correct_pair(setup.match, execution, pair, found);
+      correct_pair(expects_negative_disparities(setup.match), execution, pair, found);
     }
     if (pair.maps.left.disparity_px.empty()) {
       PairMatcher(setup.match, execution, RowMode::kAsIs)

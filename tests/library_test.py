@@ -1,6 +1,7 @@
 """The shared library, as another language calls it: usage library_test.py PROGRAM LIBRARY SOURCE_DIR"""
 
 import ctypes
+import itertools
 import os
 import re
 import subprocess
@@ -58,6 +59,12 @@ class LibraryTest(unittest.TestCase):
         for position, side in enumerate(["left", "right"]):
             cls.run_program("synth", "scene/left.png", "scene/right.png", "--view", str(position),
                             "--disparities", "1:16", "-o", f"{side}.ppm")
+        with open("right.ppm", "r+b") as file:  # 1 px lower: its rows are corrected
+            header = file.read()[:-3 * WIDTH * HEIGHT]
+            file.seek(len(header))
+            pixels = file.read()
+            file.seek(len(header))
+            file.write(pixels[:3 * WIDTH] + pixels[:-3 * WIDTH])
         cls.pixels = [Path(f"{side}.ppm").read_bytes()[-3 * WIDTH * HEIGHT:]
                       for side in ["left", "right"]]
 
@@ -91,17 +98,20 @@ class LibraryTest(unittest.TestCase):
         self.assertEqual(status, OK, api.vantage_last_error())
         api.vantage_matcher_destroy(handle)  # the pair lives on
         given = ["left.ppm", "right.ppm", "--disparities", "1:16"]
-        self.run_program("match", *given, "-o", "0.pfm", "--output-right", "1.pfm")
+        for side, name in enumerate(["left", "right"]):
+            self.run_program("match", *given, "--reference", name, "-o", f"disparity-{side}.pfm",
+                             "--confidence", f"confidence-{side}.pfm")
         self.run_program("synth", *given, "--view", "0.5,0.1", "-o", "view.ppm")
         row = 4 * WIDTH + 8  # some bytes between rows stay as they are
-        for side in [0, 1]:
+        for name, side in itertools.product(["disparity", "confidence"], [0, 1]):
             values = ctypes.create_string_buffer(b"\7" * (row * HEIGHT), row * HEIGHT)
             room = picture(values, channels=1, bits=32, row_bytes=row)
-            self.assertEqual(api.vantage_pair_disparity(pair, side, ctypes.byref(room)), OK)
+            self.assertEqual(getattr(api, f"vantage_pair_{name}")(pair, side, ctypes.byref(room)), OK,
+                             api.vantage_last_error())
             rows = [values.raw[y * row:(y + 1) * row] for y in range(HEIGHT)]
             self.assertEqual({line[4 * WIDTH:] for line in rows}, {b"\7" * 8})
             upwards = b"".join(line[:4 * WIDTH] for line in reversed(rows))
-            self.assertEqual(upwards, Path(f"{side}.pfm").read_bytes()[-4 * WIDTH * HEIGHT:])
+            self.assertEqual(upwards, Path(f"{name}-{side}.pfm").read_bytes()[-4 * WIDTH * HEIGHT:])
         values = ctypes.create_string_buffer(3 * WIDTH * HEIGHT)
         room = picture(values, is_bgr=1)
         self.assertEqual(api.vantage_pair_view(pair, ctypes.c_double(0.5), ctypes.c_double(0.1),

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <mutex>
 #include <new>
 #include <string>
 #include <utility>
@@ -20,7 +21,6 @@
 #include "engine/library/pictures.h"
 #include "engine/library/vantage_c.h"
 #include "engine/rectification/rows/row_correction.h"
-#include "engine/rectification/rows/row_remarks.h"
 #include "engine/synthesis/view_renderer.h"
 
 namespace vantage {
@@ -60,21 +60,6 @@ void require(const void* pointer, const char* name) {
   }
 }
 
-void correct_pair(const MatcherOptions& options, Execution& execution, vantage_pair& result) {
-  PairWithMaps& pair = result.pair;
-  const RowCheck check = check_rows(pair.left, pair.right, &execution);
-  if (check.pays()) {
-    Photograph corrected;
-    correct_rows(pair.right, check.rows->field, corrected, execution);
-    pair.right = std::move(corrected);
-    result.rows = check.rows->field;
-  }
-  std::ranges::move(
-      row_remarks(check, {.is_corrected = check.pays(),
-                          .expects_negative = expects_negative_disparities(options.match)}),
-      std::back_inserter(result.remarks));
-}
-
 void match_pair(const vantage_matcher& matcher, vantage_pair& result) {
   const MatcherOptions& options = matcher.options;
   Execution& execution = *matcher.execution;
@@ -84,27 +69,43 @@ void match_pair(const vantage_matcher& matcher, vantage_pair& result) {
   result.remarks = scale_to_white_level(both, options.white_level);
   leave_out_of_pair({}, pair.left, pair.right);
   if (options.rows == RowMode::kAuto && !options.match.disparities_y) {
-    correct_pair(options, execution, result);
+    result.rows =
+        correct_pair(expects_negative_disparities(options.match), execution, pair, result.remarks);
   }
   MatchReport report;
-  matcher.matcher.match(pair.left, pair.right, {}, pair.maps, &report);
+  matcher.matcher->match(pair.left, pair.right, {}, pair.maps, &report);
   std::ranges::move(report.remarks, std::back_inserter(result.remarks));
 }
 
-/// The map of one image, in the pixels of the image that the caller gave. `moved` holds it if it
-/// had to be made.
-const MatchedMap& map_of(const vantage_pair& pair, vantage_side side, MatchedMap& moved) {
+const DisparityMaps& probabilities_of(const vantage_pair& pair) {
+  std::call_once(pair.has_probabilities, [&] {
+    const scheduler::SharedThreads::Call call(pair.execution->threads());
+    DisparityMaps maps;
+    pair.matcher->match(pair.pair.left, pair.pair.right, {.probability = true}, maps);
+    pair.probabilities.left.confidence = std::move(maps.left.confidence);
+    pair.probabilities.right.confidence = std::move(maps.right.confidence);
+  });
+  return pair.probabilities;
+}
+
+void require_side(vantage_side side) {
   if (side != VANTAGE_LEFT && side != VANTAGE_RIGHT) {
     throw UsageError(fmt::format("side is {}, expected 0 or 1", static_cast<int>(side)));
   }
-  const MatchedMap& map = side == VANTAGE_LEFT ? pair.pair.maps.left : pair.pair.maps.right;
+}
+
+/// Writes the values of one image's map in the pixels of the image that the caller gave.
+void write_values(const vantage_pair& pair, const DisparityMaps& maps, vantage_side side,
+                  Image<float> MatchedMap::*values, const vantage_picture* picture) {
+  const MatchedMap& map = side == VANTAGE_LEFT ? maps.left : maps.right;
   if (side == VANTAGE_LEFT || !pair.rows) {
-    return map;
+    write_map(map.*values, picture);
+    return;
   }
-  moved.disparity_px = map.disparity_px.copy();
-  moved.confidence = map.confidence.copy();
+  MatchedMap moved;
+  moved.*values = (map.*values).copy();
   bring_to_given_rows(*pair.rows, moved, *pair.execution);
-  return moved;
+  write_map(moved.*values, picture);
 }
 
 }  // namespace
@@ -132,8 +133,9 @@ vantage_status vantage_matcher_create(const char* const* options, size_t count,
     leave_opencv_to_host();
     const MatcherOptions parsed(texts);
     auto execution = std::make_shared<Execution>(parsed.execution);
-    *matcher = new vantage_matcher{parsed, execution,
-                                   PairMatcher(parsed.match, *execution, RowMode::kAsIs)};
+    *matcher = new vantage_matcher{
+        parsed, execution,
+        std::make_shared<const PairMatcher>(parsed.match, *execution, RowMode::kAsIs)};
   });
 }
 
@@ -146,6 +148,7 @@ vantage_status vantage_match(const vantage_matcher* matcher, const vantage_image
     require(pair, "pair");
     auto result = std::make_unique<vantage_pair>();
     result->execution = matcher->execution;
+    result->matcher = matcher->matcher;
     result->synthesis = matcher->options.synthesis;
     result->pair.left = photograph_of(left, "left");
     result->pair.right = photograph_of(right, "right");
@@ -161,8 +164,8 @@ vantage_status vantage_pair_disparity(const vantage_pair* pair, vantage_side sid
                                       const vantage_picture* map) {
   return guarded([&] {
     require(pair, "pair");
-    MatchedMap moved;
-    write_map(map_of(*pair, side, moved).disparity_px, map);
+    require_side(side);
+    write_values(*pair, pair->pair.maps, side, &MatchedMap::disparity_px, map);
   });
 }
 
@@ -170,8 +173,8 @@ vantage_status vantage_pair_confidence(const vantage_pair* pair, vantage_side si
                                        const vantage_picture* map) {
   return guarded([&] {
     require(pair, "pair");
-    MatchedMap moved;
-    write_map(map_of(*pair, side, moved).confidence, map);
+    require_side(side);
+    write_values(*pair, probabilities_of(*pair), side, &MatchedMap::confidence, map);
   });
 }
 

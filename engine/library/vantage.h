@@ -10,22 +10,28 @@
 
 #include "vantage_c.h"
 
-/// C++ for vantage_c.h, which says what all of it means. It is compiled with your program, so the
-/// library needs no compiler like yours; C++17. Functions throw Error.
+/// @file
+/// C++17 for vantage_c.h.
+
+/// C++ for vantage_c.h, whose rules for threads, memory and pixels hold. It is compiled with your
+/// program, so the library needs no compiler like yours. Functions throw Error, and std::bad_alloc
+/// for #VANTAGE_NO_MEMORY; then their outputs are as they were.
 namespace vantage::v0 {
 
-/// what(): vantage_last_error(). std::bad_alloc is thrown where memory ends.
+/// What a function could not do; what() is the text of vantage_last_error(), one line.
 class Error : public std::runtime_error {
  public:
+  /// `status` of a call that failed, and its `text`.
   Error(vantage_status status, const std::string& text)
       : std::runtime_error(text), status_(status) {}
-  /// VANTAGE_ERROR or VANTAGE_USAGE.
+  /// #VANTAGE_ERROR or #VANTAGE_USAGE.
   [[nodiscard]] vantage_status status() const { return status_; }
 
  private:
   vantage_status status_;
 };
 
+/// Throws the last error of this thread, unless `status` is #VANTAGE_OK. For calls of vantage_c.h.
 inline void throw_unless_ok(vantage_status status) {
   if (status == VANTAGE_NO_MEMORY) {
     throw std::bad_alloc();
@@ -35,17 +41,18 @@ inline void throw_unless_ok(vantage_status status) {
   }
 }
 
-/// Pixels in your memory: T is uint8_t, uint16_t or float. row_bytes, is_bgr: see vantage_image.
+/// Pixels in your memory: T is uint8_t, uint16_t or float, constant where they are only read.
+/// Copies of an Image share its pixels.
 template <typename T>
 struct Image {
-  T* pixels = nullptr;
-  int width_px = 0;
-  int height_px = 0;
-  int channels = 1;
-  std::ptrdiff_t row_bytes = 0;
-  bool is_bgr = false;
+  T* pixels = nullptr;           ///< The upper left pixel.
+  int width_px = 0;              ///< Columns, 1 to 65500.
+  int height_px = 0;             ///< Rows, 1 to 65500.
+  int channels = 1;              ///< 1: grey, 3: RGB, 4: RGB and alpha.
+  std::ptrdiff_t row_bytes = 0;  ///< From a row to the next one; 0: rows follow each other.
+  bool is_bgr = false;           ///< Whether blue is first and red third.
 
-  /// As vantage_image or, of a T that is not constant, as vantage_picture.
+  /// The same as Struct: vantage_image or, of a T that is not constant, vantage_picture.
   template <typename Struct>
   [[nodiscard]] Struct as() const {
     Struct image{};
@@ -61,33 +68,42 @@ struct Image {
   }
 };
 
+/// What was found in the images, assumed or corrected.
 struct Remark {
-  std::string text;
-  bool is_warning = false;
+  std::string text;         ///< One line.
+  bool is_warning = false;  ///< Whether the maps may be wrong for it; else a note.
 };
 
-/// Two images that were matched. Moved, not copied; functions may be called concurrently.
+/// Two images that were matched, and their maps. It can be moved, not copied, and may outlive its
+/// Matcher. Thread rule: functions may be called concurrently.
 class Pair {
  public:
-  explicit Pair(vantage_pair* pair) : pair_(pair) {}
+  /// Takes `pair`, and destroys it in the end.
+  explicit Pair(vantage_pair* pair) : pair_(pair, &vantage_pair_destroy) {}
 
-  /// vantage_pair_disparity()
+  /// Fills `map`, of the size of the images and 1 channel, with the disparities of an image in
+  /// pixels, x_left - x_right; NaN where unknown. Throws Error for another shape.
+  /// vantage_pair_disparity().
   void disparity(vantage_side side, const Image<float>& map) const {
     const auto picture = map.as<vantage_picture>();
     throw_unless_ok(vantage_pair_disparity(pair_.get(), side, &picture));
   }
-  /// vantage_pair_confidence()
+  /// Fills `map`, shaped as for disparity(), with the probability that a disparity is within 1 px
+  /// of the true one: 0 to 1, 0 where unknown. The first call takes about as long as
+  /// Matcher::match(). Throws Error for another shape. vantage_pair_confidence().
   void confidence(vantage_side side, const Image<float>& map) const {
     const auto picture = map.as<vantage_picture>();
     throw_unless_ok(vantage_pair_confidence(pair_.get(), side, &picture));
   }
-  /// vantage_pair_view()
+  /// Fills `view`, of the size, channels and T of the images, with what a camera at (x, y) sees. In
+  /// baselines, -16 to 16: (0, 0) is the left camera, (1, 0) the right one, positive y is below.
+  /// Throws Error for another shape, and beyond 16. vantage_pair_view().
   template <typename T>
   void view(double x, double y, const Image<T>& view) const {
     const auto picture = view.template as<vantage_picture>();
     throw_unless_ok(vantage_pair_view(pair_.get(), x, y, &picture));
   }
-  /// All of vantage_pair_remark().
+  /// All that was found in the images, assumed or corrected. vantage_pair_remark().
   [[nodiscard]] std::vector<Remark> remarks() const {
     std::vector<Remark> found;
     int is_warning = 0;
@@ -98,16 +114,17 @@ class Pair {
   }
 
  private:
-  struct Destroy {
-    void operator()(vantage_pair* pair) const { vantage_pair_destroy(pair); }
-  };
-  std::unique_ptr<vantage_pair, Destroy> pair_;
+  std::unique_ptr<vantage_pair, decltype(&vantage_pair_destroy)> pair_;
 };
 
-/// Options and threads for many pairs. Moved, not copied; match() may be called concurrently.
+/// Options and threads for many pairs; keep it from pair to pair. It can be moved, not copied.
+/// Thread rule: match() may be called concurrently; calls share the threads.
 class Matcher {
  public:
-  /// vantage_matcher_create(): Matcher({"preset=quality", "disparities=0:63"}).
+  /// Of options of `vantage match` and `vantage synth`: Matcher({"preset=quality",
+  /// "disparities=0:63"}). Without any: preset balanced, disparities found for each pair, all
+  /// processors. Throws Error for an unknown option, a wrong value, and what cannot be combined.
+  /// vantage_matcher_create().
   explicit Matcher(const std::vector<std::string>& options = {}) {
     std::vector<const char*> texts;
     texts.reserve(options.size());
@@ -119,7 +136,8 @@ class Matcher {
     matcher_.reset(matcher);
   }
 
-  /// vantage_match()
+  /// Makes the maps of both images of a rectified pair of equal size and channels, which are
+  /// copied. Throws Error for shapes that differ or are out of range. vantage_match().
   template <typename T>
   [[nodiscard]] Pair match(const Image<T>& left, const Image<T>& right) const {
     const auto left_image = left.template as<vantage_image>();
@@ -130,10 +148,8 @@ class Matcher {
   }
 
  private:
-  struct Destroy {
-    void operator()(vantage_matcher* matcher) const { vantage_matcher_destroy(matcher); }
-  };
-  std::unique_ptr<vantage_matcher, Destroy> matcher_;
+  std::unique_ptr<vantage_matcher, decltype(&vantage_matcher_destroy)> matcher_{
+      nullptr, &vantage_matcher_destroy};
 };
 
 }  // namespace vantage::v0

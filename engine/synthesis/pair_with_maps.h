@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "engine/execution.h"
 #include "engine/image/disparity_maps.h"
@@ -8,6 +9,7 @@
 #include "engine/rectification/rectified_pair.h"
 #include "engine/rectification/rectifier.h"
 #include "engine/rectification/rows/row_field.h"
+#include "engine/remark.h"
 
 namespace vantage {
 
@@ -30,5 +32,12 @@ struct PairWithMaps {
 /// Brings what belongs to `right`, whose rows have been corrected, to its new rows: the photograph
 /// as it was read, and the maps where there are some. Identical for any execution.
 void follow_corrected_rows(const RowField& field, Execution& execution, PairWithMaps& pair);
+
+/// Brings `right`, and what belongs to it, to the rows of `left`, where the images show how and it
+/// pays. Returns by what; none: nothing was changed. Adds what users are told of the rows to
+/// `remarks`. `expects_negative`: see RowUse. Identical for any execution. Thread rule: may be
+/// called concurrently for different pairs.
+std::optional<RowField> correct_pair(bool expects_negative, Execution& execution,
+                                     PairWithMaps& pair, std::vector<Remark>& remarks);
 
 }  // namespace vantage

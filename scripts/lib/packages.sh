@@ -35,7 +35,7 @@ readonly PACKAGING_PACKAGES=(dpkg-dev file "${WHEEL_PACKAGES[@]}")
 
 # What the documentation site is built with.
 # shellcheck disable=SC2034
-readonly SITE_PACKAGES=(mkdocs mkdocs-material python3-opencv python3-numpy)
+readonly SITE_PACKAGES=(mkdocs mkdocs-material doxygen python3-opencv python3-numpy)
 
 can_be_root() {
   [[ $(id -u) -eq 0 ]] || command -v sudo >/dev/null

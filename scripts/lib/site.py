@@ -22,7 +22,7 @@ PAGES = {"README.md": "about.md", "CONTRIBUTING.md": "contributing.md", "CHANGEL
          "perf/README.md": "benchmarks.md"}
 # Pages that are made for the site, as documents link to them → on the site.
 MADE_PAGES = {"docs/gallery.md": "gallery.md", "docs/commands/index.md": "commands/index.md",
-              "docs/python-reference.md": "python-reference.md"}
+              "docs/python-reference.md": "python-reference.md", "docs/cpp/index.html": "cpp/index.html"}
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 
 
