@@ -21,10 +21,16 @@ readonly FUZZ_PACKAGES=(clang libclang-rt-14-dev libomp-dev)
 # shellcheck disable=SC2034
 readonly PYTHON_PACKAGES=(mypy python3-jedi python3-nbclient python3-ipykernel)
 # shellcheck disable=SC2034
+readonly NEIGHBOUR_PACKAGES=(  # programs and libraries that docs/NEIGHBOURS.md is about
+  gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good
+  openimageio-tools python3-openimageio python3-xarray
+)
+# shellcheck disable=SC2034
 readonly WHEEL_PACKAGES=(patchelf python3-build python3-setuptools python3-venv python3-wheel)
 # shellcheck disable=SC2034
 readonly TEST_PACKAGES=(
   slurmctld slurmd slurm-client munge xvfb xdotool "${WHEEL_PACKAGES[@]}" "${PYTHON_PACKAGES[@]}"
+  "${NEIGHBOUR_PACKAGES[@]}"
 )
 # shellcheck disable=SC2034
 readonly BROWSER_PACKAGES=(chromium)

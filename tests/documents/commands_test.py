@@ -5,10 +5,11 @@ usage: commands_test.py VANTAGE [PYTHON_FOLDER] [--only DOCUMENT] [--verbose]
 
 A document is read as by a newcomer: its blocks run in order in one folder, which is empty at first,
 so it must name whatever it needs. Python blocks share their names; PYTHON_FOLDER holds the module
-(without it, or where no interpreter can load it, they are left out). Two comments before a block
+(without it, or where no interpreter can load it, they are left out). Three comments before a block
 say otherwise:
 
     <!-- not run: REASON -->         the block is left out
+    <!-- needs: PROGRAM -->          the block is left out where there is no PROGRAM
     <!-- data of yours: NAME -->     a reader of the block has NAME; a small one is made (STAND_INS)
 
 Options that the text or a block that is not run names must be options of the program: of the command
@@ -36,7 +37,7 @@ from program import read_program  # noqa: E402
 DOCUMENTS = ["README.md", "CONTRIBUTING.md", "perf/README.md",
              *sorted(f"docs/{file.name}" for file in (ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w*)\s*$")
-COMMENT = re.compile(r"<!-- (not run|data of yours): (.+) -->")
+COMMENT = re.compile(r"<!-- (not run|needs|data of yours): (.+) -->")
 
 # Runs blocks of Python that share their names; one JSON text a line in, the last line of the error
 # or null out.
@@ -55,15 +56,21 @@ for line in sys.stdin:
 """
 
 
+def is_run(comment):
+    kind, value = comment.groups() if comment else ("", "")
+    return kind != "not run" and not (kind == "needs" and not shutil.which(value))
+
+
 def blocks(text):
-    """Line number, language, text and (kind, value) of the comment before each block that is run."""
+    """Line number, language, text and data of the reader's, of each block that is run."""
     block, start, language, before = None, 0, "", ""
     for number, line in enumerate(text.splitlines(), 1):
         fence = FENCE.match(line)
         if block is not None and line.startswith("```"):
             comment = COMMENT.search(before)
-            if language in ("sh", "python") and not (comment and comment.group(1) == "not run"):
-                yield start, language, "\n".join(block), comment and comment.group(2)
+            if language in ("sh", "python") and is_run(comment):
+                has_data = comment and comment.group(1) == "data of yours"
+                yield start, language, "\n".join(block), comment.group(2) if has_data else None
             block, before = None, ""
         elif block is not None:
             block.append(line)
