@@ -12,7 +12,6 @@
 
 #include "engine/error.h"
 #include "engine/options/execution_settings.h"
-#include "engine/options/nearest_name.h"
 #include "engine/quoted_text.h"
 #include "engine/thread_placement.h"
 #include "python/calls.h"
@@ -133,18 +132,9 @@ void set_options(Settings& settings, const py::dict& options) {
   for (const auto& [key, value] : options) {
     const std::string given = py::str(key);
     const std::string name = option_name(given);
-    const Setting* const setting = settings.find(name);
-    if (setting == nullptr) {
-      std::vector<std::string> names;
-      for (const Setting& known : settings.all()) {
-        names.push_back(known.name);
-      }
-      const std::string nearest = nearest_name(name, names);
-      throw UsageError(fmt::format("unknown option '{}'{}", quotable(given),
-                                   nearest.empty() ? "" : ", did you mean " + nearest + "?"));
-    }
+    const Setting& setting = settings.require(name, given);
     if (!value.is_none()) {
-      values[name] = to_setting(*setting, value);
+      values[name] = to_setting(setting, value);
     }
   }
   settings.take_values(values);

@@ -1,15 +1,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <mutex>
 #include <new>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "engine/build_info.h"
 #include "engine/error.h"

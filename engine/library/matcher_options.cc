@@ -6,7 +6,6 @@
 #include "engine/library/handles.h"
 #include "engine/options/execution_settings.h"
 #include "engine/options/match_settings.h"
-#include "engine/options/nearest_name.h"
 #include "engine/options/pair_source_settings.h"
 #include "engine/options/settings.h"
 #include "engine/options/synthesis_settings.h"
@@ -25,17 +24,7 @@ MatcherOptions::MatcherOptions(const std::vector<std::string_view>& texts)
     if (end == std::string_view::npos) {
       throw vantage::UsageError(fmt::format("option is '{}', expected NAME=VALUE", text));
     }
-    const std::string name(text.substr(0, end));
-    if (settings.find(name) == nullptr) {
-      std::vector<std::string> names;
-      for (const vantage::Setting& setting : settings.all()) {
-        names.push_back(setting.name);
-      }
-      const std::string nearest = vantage::nearest_name(name, names);
-      throw vantage::UsageError(fmt::format(
-          "unknown option '{}'{}", name, nearest.empty() ? "" : ", did you mean " + nearest + "?"));
-    }
-    values[name] = std::string(text.substr(end + 1));
+    values[std::string(text.substr(0, end))] = std::string(text.substr(end + 1));
   }
   settings.take_values(values);
   match.validate();

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "engine/error.h"
 #include "engine/io/files/encoded_text.h"
+#include "engine/options/nearest_name.h"
 #include "engine/quoted_text.h"
 
 namespace vantage {
@@ -53,6 +55,17 @@ bool Setting::is_empty() const {
 const Setting* Settings::find(std::string_view name) const {
   const auto setting = std::ranges::find(settings_, name, &Setting::name);
   return setting == settings_.end() ? nullptr : &*setting;
+}
+
+const Setting& Settings::require(const std::string& name, const std::string& given) const {
+  if (const Setting* const setting = find(name)) {
+    return *setting;
+  }
+  std::vector<std::string> names;
+  std::ranges::transform(settings_, std::back_inserter(names), &Setting::name);
+  const std::string nearest = nearest_name(name, names);
+  throw UsageError(fmt::format("unknown option '{}'{}", quotable(given),
+                               nearest.empty() ? "" : ", did you mean " + nearest + "?"));
 }
 
 Setting& Settings::add(std::string name, std::string value_name, std::string help) {
@@ -103,11 +116,7 @@ std::vector<std::string> Settings::input_paths() const {
 
 void Settings::set_values(const SettingValue& values) {
   for (const auto& [key, value] : values.items()) {
-    const Setting* const setting = find(key);
-    if (setting == nullptr) {
-      throw UsageError(fmt::format("unknown setting '{}'", quotable(key)));
-    }
-    setting->assign_stored(value, key);
+    require(key, key).assign_stored(value, key);
   }
 }
 

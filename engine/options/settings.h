@@ -155,6 +155,8 @@ class Settings {
   [[nodiscard]] const std::deque<Setting>& all() const { return settings_; }
   /// Null: there is none of that name.
   [[nodiscard]] const Setting* find(std::string_view name) const;
+  /// Throws UsageError, with the nearest name, where there is none; `given`: as the user wrote it.
+  [[nodiscard]] const Setting& require(const std::string& name, const std::string& given) const;
   /// Names; empty: all.
   [[nodiscard]] const std::vector<std::string_view>& short_help() const { return short_help_; }
   [[nodiscard]] const std::vector<std::string_view>& examples() const { return examples_; }
