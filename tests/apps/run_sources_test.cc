@@ -130,6 +130,35 @@ TEST_F(RunSources, TheFirstFramesBad) {
   expect_skipped({0, 1, 2});
 }
 
+/// Segments of a chunk without any picture are black, in the size of the others.
+TEST_F(RunSources, AllFramesOfTheFirstChunkBad) {
+  for (int frame = 0; frame < 5; ++frame) {
+    write_file(file("left", frame), "");
+  }
+  EXPECT_EQ(run(out_, joined(words("--save stereo,preview,depth-video --video stereo,preview "
+                                   "--depth-range -1:10 --chunk-frames 5"),
+                             {"--keep-going"}))
+                .exit_code,
+            3);
+  for (const std::string video : {"stereo.mp4", "preview.mp4", "depth-video.mkv"}) {
+    VideoReader reader(out_ + "/" + video);
+    EXPECT_EQ(reader.frame_count(), kFrames) << video;
+    for (const int frame : {0, 4, 5}) {
+      ASSERT_TRUE(frame == 0 || frame == 5 || (reader.skip() && reader.skip() && reader.skip()));
+      Photograph picture;
+      ASSERT_TRUE(reader.read(picture));
+      const bool is_black = std::visit(
+          [](const auto& image) {
+            const auto* const row = image.row(kHeight / 2);
+            return std::all_of(row, row + image.width() * image.channels(),
+                               [](auto value) { return value == 0; });
+          },
+          picture.pixels);
+      EXPECT_EQ(is_black, frame < 5) << video << " " << frame;
+    }
+  }
+}
+
 /// A number that is missing is a frame that is: those behind it keep their partners.
 TEST_F(RunSources, AMissingNumberOfAPattern) {
   const FolderContent expected = undisturbed({});

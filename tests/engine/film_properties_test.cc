@@ -275,6 +275,24 @@ std::vector<Photograph> frames_of(FrameSource& source) {
   return frames;
 }
 
+/// The picture after it is needed for deinterlacing, so damage is found a frame early, and told at
+/// its own.
+TEST(FilmProperties, DamageOfAnInterlacedFilmIsAtItsFrame) {
+  const TemporaryFolder folder;
+  put_x264_video(folder / "a.mp4", 8, kRate, "tff=1:keyint=3:bframes=0");
+  const std::vector<VideoPacket> packets = video_packets(folder / "a.mp4");
+  auto bytes = bytes_of(folder / "a.mp4");
+  std::fill_n(bytes.begin() + packets.at(4).offset, 4, std::uint8_t{0xFF});
+  put_bytes(folder / "a.mp4", bytes);
+  const auto source = open_frame_source(folder / "a.mp4", {.deinterlaces = true});
+  FetchedFrame frame;
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_TRUE(source->fetch(frame)) << i;
+    EXPECT_EQ(error_of([&] { frame.decode(); }), "") << i;
+  }
+  EXPECT_THAT(error_of([&] { source->fetch(frame); }), HasSubstr("frame 4 "));
+}
+
 TEST(FilmProperties, InterlacedPicturesAreDeinterlacedTheSameFromAnywhere) {
   const TemporaryFolder folder;
   put_x264_video(folder / "a.mp4", 8, kRate, "tff=1:keyint=3:bframes=0");

@@ -300,6 +300,7 @@ TEST(NaturalOrder, CountsNumbersAndIsAStrictTotalOrder) {
                                                       "a1",
                                                       "a1b2",
                                                       "a1b10",
+                                                      "a1c",
                                                       "a02",
                                                       "b",
                                                       "b99999999999999999999998",

@@ -2,9 +2,12 @@
 
 #include "engine/sequence/pairs/moving_camera_pairs.h"
 #include "engine/sequence/pairs/packed_pairs.h"
+#include "engine/sequence/pairs/several_cameras.h"
+#include "engine/sequence/pairs/streamed_pairs.h"
 #include "engine/sequence/pairs/two_camera_pairs.h"
 #include "tests/engine/engine_test.h"
 #include "tests/engine/frame_test_support.h"
+#include "tests/engine/made_up_pairs.h"
 
 namespace vantage::pairing_test {
 
@@ -123,6 +126,68 @@ TEST(TwoCameraPairs, FramesMissingOnOneSideAreRemarked) {
   EXPECT_THAT(pairs.remarks(), IsEmpty());
 }
 
+TEST(SeveralCameras, FurtherCamerasStayInStepBehindABadFrame) {
+  auto left = std::make_unique<MadeUpVideo>("l", 6);
+  auto right = std::make_unique<MadeUpVideo>("r", 6);
+  auto third = std::make_unique<MadeUpVideo>("t", 6);
+  right->bad = {1};
+  third->bad = {3};
+  third->missing = {{4, 2}};
+  FramePairing pairing = pair_frames({left.get(), right.get(), third.get()}, 0, std::nullopt);
+  std::vector<std::unique_ptr<FrameSource>> more;
+  more.push_back(std::move(third));
+  SeveralCameras cameras(
+      std::make_unique<TwoCameraPairs>(std::move(left), std::move(right), std::move(pairing)),
+      std::move(more));
+  EXPECT_EQ(cameras.describe(2), "l 2, r 2, t 2");
+  EXPECT_THAT(cameras.identities(), ElementsAre("video l", "video r", "video t"));
+  std::vector<std::string> outcomes;
+  std::vector<std::string> remarks;
+  FramePair pair;
+  for (bool goes_on = true; goes_on;) {
+    try {
+      goes_on = cameras.fetch(pair);
+      if (goes_on) {
+        cameras.decode(pair);
+        outcomes.push_back(std::to_string(value_of(pair.left)) + " " +
+                           std::to_string(value_of(pair.right)) + " " +
+                           std::to_string(value_of(pair.more.at(0))));
+        remarks.insert(remarks.end(), pair.remarks.begin(), pair.remarks.end());
+      }
+    } catch (const Error& error) {
+      outcomes.push_back(std::to_string(pair.index) + ": " + error.what());
+    }
+  }
+  EXPECT_THAT(outcomes,
+              ElementsAre("0 0 0", "1: r 1 is bad", "2 2 2", "3: t 3 is bad", "4 4 4", "5 5 5"));
+  EXPECT_THAT(remarks,
+              ElementsAre("t 4 comes late",
+                          "0 frames are missing in the left video but 2 in that of camera 3 before "
+                          "pair 4: from here on the images may not be of the same moment"));
+}
+
+/// What is held is given again, its problem too.
+TEST(StreamedPairs, BadPairsAreBadAgain) {
+  auto made = std::make_unique<MadeUpPairs>(4);
+  made->bad_to_fetch = {1};
+  StreamedPairs pairs(std::move(made), 3);
+  const auto outcome = [&](int index) {
+    FramePair pair;
+    pairs.skip_to(index);
+    const std::string error = error_of([&] { pairs.fetch(pair); });
+    return error + "|" + std::to_string(pair.index);
+  };
+  for (const bool again : {false, true}) {
+    EXPECT_EQ(outcome(0), "|0") << again;
+    EXPECT_EQ(outcome(1), "the stream is damaged|1") << again;
+    EXPECT_EQ(outcome(2), "|2") << again;
+  }
+  pairs.forget_start();
+  EXPECT_EQ(outcome(1), "the stream is damaged|1");
+  EXPECT_EQ(outcome(2), "|2");
+  EXPECT_EQ(outcome(3), "|3");
+}
+
 TEST(PackedPairs, ABadFrameIsOneBadPair) {
   auto video = std::make_unique<MadeUpVideo>("v", 4);
   video->bad = {1};
@@ -160,6 +225,16 @@ TEST(MovingCameraPairs, FramesMissingBetweenTheTwoAreRemarked) {
   EXPECT_THAT(remarks.at(1), ElementsAre("1 frame is missing between v 1 and v 3"));
   EXPECT_THAT(remarks.at(2), ElementsAre("3 frames are missing between v 2 and v 4"));
   EXPECT_THAT(remarks.at(3), ElementsAre("2 frames are missing between v 3 and v 5"));
+}
+
+TEST(MovingCameraPairs, AnOddNumberOfMissingPicturesExchangesTheSides) {
+  auto video = std::make_unique<MadeUpVideo>("v", 10);
+  video->missing = {{2, 2}, {6, 1}};
+  const auto pairs = make_moving_camera_pairs(std::move(video), {.distance = 2});
+  const std::map<int, std::vector<std::string>> remarks = remarks_of(*pairs);
+  ASSERT_THAT(remarks, testing::SizeIs(1));
+  EXPECT_THAT(remarks.at(3), ElementsAre("1 picture is missing before v 7: from here on left and "
+                                         "right may be exchanged"));
 }
 
 TEST(MovingCameraPairs, EveryFrameIsDecodedOnce) {

@@ -48,6 +48,12 @@ TEST(TrajectoryFile, KittiHoldsRowsOfCameraToWorld) {
   }
 }
 
+TEST(TrajectoryFile, MayBeginWithAByteOrderMarkButIsText) {
+  const std::string line = "0 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(parse_trajectory("\xEF\xBB\xBF" + line, "poses.txt").poses.size(), 1U);
+  EXPECT_THAT(problem_of_trajectory(line + std::string(1, '\0')), HasSubstr("is not a text"));
+}
+
 TEST(TrajectoryFile, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(problem_of_trajectory("# nothing\n"), HasSubstr("poses.txt: holds no poses"));
   EXPECT_THAT(problem_of_trajectory("\n1 2 3\n"), HasSubstr("poses.txt line 2: holds 3 values"));

@@ -7,6 +7,7 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/netpbm.h"
 #include "engine/io/images/photograph_io.h"
+#include "engine/io/images/png_decoder.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/io/maps/npy.h"
 #include "engine/io/video/frame_source.h"
@@ -149,6 +150,13 @@ TEST_F(RefusedFiles, PngOfWrongTypesAndPixels) {
   std::fill_n(png.begin() + static_cast<std::ptrdiff_t>(data) + 4, size, '\x55');
   EXPECT_THAT(problem(with_checksum(png, data, 4 + size)),
               HasSubstr("its pixels cannot be decoded ("));
+  // libpng's own reader, where the header's chunks were not checked before.
+  png = text_of("b.png").substr(0, data + 6);
+  const auto decode = [](const FileBytes& file) {
+    Photograph memory;
+    (void)decode_any_png(file, file.all(), memory);
+  };
+  EXPECT_THAT(problem_of(decode, png), HasSubstr("the data ends too early"));
 }
 
 TEST_F(RefusedFiles, WhatCannotBeWritten) {

@@ -82,6 +82,11 @@ TEST_F(StereoJpegs, JpsHasTheHalvesThatItsMarkerNames) {
   }
   put_text(folder_ / "d.jps", marker(std::string("\x00\x00\x04\x01", 4)));
   EXPECT_THAT(error_of([&] { read("d.jps#0"); }), HasSubstr("anaglyph"));
+  EXPECT_FALSE(is_stereo_jpeg(folder_ / "d.jps"));
+  // Kind 0: a picture of its own.
+  put_text(folder_ / "e.jpg", marker(std::string("\x00\x04\x02\x00", 4)));
+  EXPECT_FALSE(is_stereo_jpeg(folder_ / "e.jpg"));
+  EXPECT_TRUE(same(read("e.jpg"), whole));
 }
 
 TEST_F(StereoJpegs, FolderOfThemIsOneOfPairs) {

@@ -6,6 +6,7 @@
 
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/images/photograph_io.h"
+#include "engine/io/maps/map_io.h"
 #include "tests/engine/engine_test.h"
 
 namespace vantage::tiff_decoder_test {
@@ -269,6 +270,11 @@ TEST(TiffDecoder, LeavesOutPixelsWithoutData) {
       .write<std::int16_t>({.bits = 16, .format = SAMPLEFORMAT_INT, .no_data = "-9999"},
                            [&](int x, int y, int) { return is_gap(x, y) ? -9999 : x; });
   expect_gaps(read_photograph(folder / "b.tif"));
+  const DisparityMap map = read_disparity(folder / "b.tif", 1);
+  for (const auto [x, y] : positions_of(kWidth, kHeight)) {
+    ASSERT_EQ(std::isnan(map.at(x, y)), is_gap(x, y)) << x << ", " << y;
+    ASSERT_TRUE(is_gap(x, y) || map.at(x, y) == static_cast<float>(x));
+  }
   TiffWriter(folder / "c.tif", "w")
       .write<float>({.bits = 32, .format = SAMPLEFORMAT_IEEEFP},
                     [](int, int, int) { return std::numeric_limits<float>::quiet_NaN(); });
@@ -306,6 +312,51 @@ TEST(TiffDecoder, TurnsAsTheTagSays) {
   EXPECT_EQ(
       written_and_read<std::uint8_t>({.orientation = 6}, "w", {.turns_upright = false}).width(),
       kWidth);
+}
+
+/// Luminance and chromaticity by logarithms, as renderers store them: XYZ becomes RGB.
+TEST(TiffDecoder, ReadsLogLuvAsColours) {
+  const TemporaryFolder folder;
+  TIFF* const tiff = TIFFOpen((folder / "a.tif").c_str(), "w");
+  for (const auto& [tag, value] : {std::pair(TIFFTAG_IMAGEWIDTH, 2),
+                                   {TIFFTAG_IMAGELENGTH, 1},
+                                   {TIFFTAG_ROWSPERSTRIP, 1},
+                                   {TIFFTAG_SAMPLESPERPIXEL, 3},
+                                   {TIFFTAG_BITSPERSAMPLE, 32},
+                                   {TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP},
+                                   {TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG},
+                                   {TIFFTAG_COMPRESSION, COMPRESSION_SGILOG},
+                                   {TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_LOGLUV},
+                                   {TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT}}) {
+    TIFFSetField(tiff, static_cast<std::uint32_t>(tag), value);
+  }
+  // White of D65 at a half, and the red of sRGB (first column of its matrix).
+  std::array<float, 6> xyz = {0.475228F, 0.5F, 0.544529F, 0.412453F, 0.212671F, 0.019334F};
+  TIFFWriteEncodedStrip(tiff, 0, xyz.data(), sizeof(xyz));
+  TIFFClose(tiff);
+  const Photograph read = read_photograph(folder / "a.tif");
+  const auto& image = std::get<Image<float>>(read.pixels);
+  const std::array<float, 6> expected = {0.5F, 0.5F, 0.5F, 1, 0, 0};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(image.row(0)[i], expected[i], 0.02) << i;
+  }
+}
+
+TEST(TiffDecoder, RefusesTilesFarLargerThanTheImage) {
+  const TemporaryFolder folder;
+  TiffWriter(folder / "a.tif", "w").write<std::uint8_t>({.tile = 16}, value_at);
+  auto bytes = bytes_of(folder / "a.tif");
+  for (const std::uint8_t tag :
+       {std::uint8_t{0x42}, std::uint8_t{0x43}}) {  // width and length of the tiles, 322 and 323
+    const std::array<std::uint8_t, 4> entry = {tag, 1, 3, 0};
+    const auto place = std::ranges::search(bytes, entry);
+    ASSERT_FALSE(place.empty());
+    const std::uint16_t side = 32000;
+    std::memcpy(&*place.begin() + 8, &side, sizeof(side));
+  }
+  put_bytes(folder / "b.tif", bytes);
+  EXPECT_THAT(error_of([&] { read_photograph(folder / "b.tif"); }),
+              HasSubstr("its tiles of 32000x32000 pixels are too large"));
 }
 
 TEST(TiffDecoder, DamagedFilesAreErrorsOfOneLine) {

@@ -241,6 +241,9 @@ TEST(VideoJoin, RefusesWhatIsMissingDamagedOrDoesNotFit) {
   EXPECT_THAT(error_with(folder / "wide.mp4"), AllOf(HasSubstr("wide.mp4"), HasSubstr("96x48")));
   put_numbered_video(folder / "fast.mp4", 2, {15, 1});
   EXPECT_THAT(error_with(folder / "fast.mp4"), HasSubstr("fast.mp4"));
+  remux_video(segments[0], folder / "slow.mp4", "mp4", {7, 1});
+  EXPECT_THAT(error_with(folder / "slow.mp4"),
+              AllOf(HasSubstr("slow.mp4"), HasSubstr("has another frame rate, expected 10/1")));
   remux_video(segments[0], folder / "gap.mp4", "mp4", kRate, {},
               [](int frame) { return frame < 2 ? frame : frame + 1; });
   EXPECT_THAT(error_with(folder / "gap.mp4"), AllOf(HasSubstr("gap.mp4"), HasSubstr("frame 2")));

@@ -218,6 +218,29 @@ TEST(VideoReader, OneDamagedPacketIsAnErrorAtItsFrame) {
   }
 }
 
+TEST(VideoReader, ASizeThatChangesIsAnErrorAtItsFrame) {
+  const TemporaryFolder folder;
+  std::vector<std::uint8_t> both;
+  for (const int width : {64, 96}) {
+    put_numbered_video(folder / "a.mp4", 5, {25, 1}, width);
+    remux_video(folder / "a.mp4", folder / "a.ts", "mpegts", {25, 1});
+    const auto bytes = bytes_of(folder / "a.ts");
+    both.insert(both.end(), bytes.begin(), bytes.end());
+  }
+  put_bytes(folder / "both.ts", both);
+  VideoReader reader(folder / "both.ts");
+  Photograph frame;
+  int frames = 0;
+  const std::string error = error_of([&] {
+    for (; reader.read(frame); ++frames) {
+      EXPECT_EQ(frame.width(), 64);
+    }
+  });
+  EXPECT_EQ(frames, 5);
+  EXPECT_THAT(error, HasSubstr("frame 5 cannot be decoded (the size of the pictures changes there, "
+                               "from 64x48 to 96x48)"));
+}
+
 TEST(VideoReader, AVideoCutWithoutEncodingIsAnErrorAndNotGrey) {
   const TemporaryFolder folder;
   put_numbered_video(folder / "a.mp4", 12, {25, 1});

@@ -85,6 +85,11 @@ FrameRate slowed_down(FrameRate rate, int factor) {
   return make_rate(std::max<std::int64_t>(1, millionths), kLargestTerm).value_or(FrameRate());
 }
 
+int frames_between(double before_s, double after_s, FrameRate rate) {
+  const double steps = (after_s - before_s) * rate.per_second();
+  return steps >= 1.5 && steps < 1e9 ? static_cast<int>(std::lround(steps)) - 1 : 0;
+}
+
 std::string to_string(FrameRate rate) {
   return rate.denominator == 1 ? fmt::format("{}", rate.numerator)
                                : fmt::format("{}/{}", rate.numerator, rate.denominator);

@@ -32,6 +32,9 @@ struct FilmStart {
 std::optional<FrameRate> parse_frame_rate(std::string_view text);
 /// rate / factor (factor ≥ 1); terms beyond the limits are rounded.
 FrameRate slowed_down(FrameRate rate, int factor);
+/// Frames that are missing between one shown at `before_s` and the next one, shown at `after_s`
+/// (seconds); 0 where times do not tell.
+int frames_between(double before_s, double after_s, FrameRate rate);
 /// "25" or "30000/1001".
 std::string to_string(FrameRate rate);
 

@@ -12,6 +12,14 @@
 
 namespace vantage {
 
+void FetchedFrame::note_missing(int count, const std::string& name) {
+  frames_missing = count;
+  if (count > 0) {
+    remarks.push_back(
+        fmt::format("{} frame{} missing before {}", count, count == 1 ? " is" : "s are", name));
+  }
+}
+
 void FetchedFrame::decode() {
   if (!file.empty()) {
     photograph = read_photograph(file, reading, std::move(photograph));

@@ -28,6 +28,8 @@ struct FetchedFrame {
   /// Remarks on a usable frame ("2 frames are missing before it").
   std::vector<std::string> remarks;
 
+  /// Sets frames_missing, with a remark where it is not 0. `name` is that of the frame.
+  void note_missing(int count, const std::string& name);
   /// Makes `photograph` from `file` or `picture`, if there is one. Thread rule: concurrently for
   /// different frames. Throws Error naming the file or frame.
   void decode();

@@ -71,7 +71,11 @@ void StreamedVideo::fail_damaged(int result) {
     fail_cut();
   }
   waits_for_key_frame_ = true;
-  throw Error(fmt::format("{}: is damaged ({}), and what depends on it", describe(decoded_),
+  is_after_damage_ = true;
+  if (shown_s_) {
+    *shown_s_ += 1 / rate_.per_second();
+  }
+  throw Error(fmt::format("{}: is damaged ({}), and what depends on it", describe(decoded_++),
                           libav_message(result)));
 }
 
@@ -115,6 +119,17 @@ void StreamedVideo::feed() {
   }
 }
 
+void StreamedVideo::note_time() {
+  const std::int64_t time = frame_->best_effort_timestamp;
+  const std::optional<double> before_s = std::exchange(shown_s_, std::nullopt);
+  if (time != AV_NOPTS_VALUE) {
+    shown_s_ = static_cast<double>(time) * av_q2d(stream_->time_base);
+  }
+  // Elsewhere a gap is the camera's: its times follow no rate exactly.
+  const bool tells = std::exchange(is_after_damage_, false) && before_s && shown_s_;
+  frames_missing_ = tells ? frames_between(*before_s, *shown_s_, rate_) : 0;
+}
+
 bool StreamedVideo::decode_next(VideoPicture& picture) {
   while (!ended_) {
     const int result = libav().avcodec_receive_frame(codec_.get(), frame_.get());
@@ -130,6 +145,7 @@ bool StreamedVideo::decode_next(VideoPicture& picture) {
         (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
       fail_damaged(result < 0 ? result : AVERROR_INVALIDDATA);
     }
+    note_time();
     picture = VideoPicture(*frame_, converters_, describe(decoded_), {.lossy_codec = lossy_codec_});
     ++decoded_;
     return true;
@@ -142,7 +158,14 @@ bool StreamedVideo::fetch(FetchedFrame& frame) {
   frame.picture = std::move(first_);
   frame.frames_missing = 0;
   frame.remarks = std::exchange(remarks_, {});
-  return !frame.picture.is_empty() || decode_next(frame.picture);
+  if (!frame.picture.is_empty()) {
+    return true;
+  }
+  if (!decode_next(frame.picture)) {
+    return false;
+  }
+  frame.note_missing(frames_missing_, describe(decoded_ - 1));
+  return true;
 }
 
 void StreamedVideo::skip_to(int index) {

@@ -28,7 +28,8 @@ class StreamedVideo final : public FrameSource {
                 FrameRate raw_rate);
 
   /// Throws Error naming the frame: when the stream ends inside it or fails, and it has no more
-  /// frames then; when it is damaged, and the next one is the next that can be decoded alone.
+  /// frames then; when it is damaged, and the next one is the next that can be decoded alone. That
+  /// one tells how many are missing before it.
   bool fetch(FetchedFrame& frame) override;
   /// Reads and drops the frames up to it. Throws Error for frames that are over.
   void skip_to(int index) override;
@@ -48,6 +49,8 @@ class StreamedVideo final : public FrameSource {
   void feed();
   [[noreturn]] void fail_cut();
   [[noreturn]] void fail_damaged(int result);
+  /// Of the frame just decoded: when it is shown, and how many the damage before it took.
+  void note_time();
 
   std::unique_ptr<StreamInput> bytes_;
   LibavInput input_;  ///< reads bytes_
@@ -62,8 +65,11 @@ class StreamedVideo final : public FrameSource {
   bool waits_for_key_frame_ = true;   ///< packets before one cannot be decoded
   std::vector<std::string> remarks_;  ///< of the next frame
   std::shared_ptr<PictureConverters> converters_ = std::make_shared<PictureConverters>();
-  int decoded_ = 0;               ///< frames
-  std::int64_t frames_end_ = -1;  ///< in bytes of the stream; -1: not known
+  int decoded_ = 0;  ///< frames, and those left out for damage
+  bool is_after_damage_ = false;
+  int frames_missing_ = 0;         ///< beside decoded_, before the last frame
+  std::optional<double> shown_s_;  ///< when the last frame is shown, in seconds; empty: not known
+  std::int64_t frames_end_ = -1;   ///< in bytes of the stream; -1: not known
   bool ended_ = false;
   VideoPicture first_;  ///< until it is fetched
 };

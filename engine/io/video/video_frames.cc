@@ -131,12 +131,7 @@ bool VideoFrames::fetch_next(FetchedFrame& frame) {
     ++next_index_;
     throw;
   }
-  frame.frames_missing = reader_->frames_missing();
-  if (frame.frames_missing > 0) {
-    frame.remarks.push_back(fmt::format("{} frame{} missing before {}", frame.frames_missing,
-                                        frame.frames_missing == 1 ? " is" : "s are",
-                                        describe(next_index_)));
-  }
+  frame.note_missing(reader_->frames_missing(), describe(next_index_));
   ++next_index_;
   return true;
 }

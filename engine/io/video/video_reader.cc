@@ -181,10 +181,7 @@ void VideoReader::State::note_time() {
   }
   const double seconds = static_cast<double>(time) * av_q2d(decoder->stream().time_base);
   if (frame_seconds) {
-    const double steps = (seconds - *frame_seconds) * timing.rate->per_second();
-    if (steps >= 1.5 && steps < 1e9) {
-      frames_missing = static_cast<int>(std::lround(steps)) - 1;
-    }
+    frames_missing = frames_between(*frame_seconds, seconds, *timing.rate);
   }
   frame_seconds = seconds;
 }

@@ -52,12 +52,12 @@ bool StreamedPairs::fetch_and_hold(FramePair& pair) {
         std::clamp<std::size_t>(kMaxHeldBytes / bytes, 1, static_cast<std::size_t>(max_held_)));
     copy_frame(pair.fetched[0], held.fetched[0]);
     copy_frame(pair.fetched[1], held.fetched[1]);
-    held.index = pair.index;
     held.remarks = pair.remarks;
   } catch (const Error&) {
     pair.wants_right = wants_right;
     held.problem = std::current_exception();
   }
+  held.index = pair.index;
   const std::exception_ptr problem = held.problem;
   held_.push_back(std::move(held));
   if (problem) {
