@@ -83,27 +83,27 @@ class Pair {
 
   /// Fills `map`, of the size of the images and 1 channel, with the disparities of an image in
   /// pixels, x_left - x_right; NaN where unknown. Throws Error for another shape.
-  /// vantage_pair_disparity().
+  /// See vantage_pair_disparity().
   void disparity(vantage_side side, const Image<float>& map) const {
     const auto picture = map.as<vantage_picture>();
     throw_unless_ok(vantage_pair_disparity(pair_.get(), side, &picture));
   }
   /// Fills `map`, shaped as for disparity(), with the probability that a disparity is within 1 px
   /// of the true one: 0 to 1, 0 where unknown. The first call takes about as long as
-  /// Matcher::match(). Throws Error for another shape. vantage_pair_confidence().
+  /// Matcher::match(). Throws Error for another shape. See vantage_pair_confidence().
   void confidence(vantage_side side, const Image<float>& map) const {
     const auto picture = map.as<vantage_picture>();
     throw_unless_ok(vantage_pair_confidence(pair_.get(), side, &picture));
   }
   /// Fills `view`, of the size, channels and T of the images, with what a camera at (x, y) sees. In
   /// baselines, -16 to 16: (0, 0) is the left camera, (1, 0) the right one, positive y is below.
-  /// Throws Error for another shape, and beyond 16. vantage_pair_view().
+  /// Throws Error for another shape, and beyond 16. See vantage_pair_view().
   template <typename T>
   void view(double x, double y, const Image<T>& view) const {
     const auto picture = view.template as<vantage_picture>();
     throw_unless_ok(vantage_pair_view(pair_.get(), x, y, &picture));
   }
-  /// All that was found in the images, assumed or corrected. vantage_pair_remark().
+  /// All that was found in the images, assumed or corrected. See vantage_pair_remark().
   [[nodiscard]] std::vector<Remark> remarks() const {
     std::vector<Remark> found;
     int is_warning = 0;
@@ -124,7 +124,7 @@ class Matcher {
   /// Of options of `vantage match` and `vantage synth`: Matcher({"preset=quality",
   /// "disparities=0:63"}). Without any: preset balanced, disparities found for each pair, all
   /// processors. Throws Error for an unknown option, a wrong value, and what cannot be combined.
-  /// vantage_matcher_create().
+  /// See vantage_matcher_create().
   explicit Matcher(const std::vector<std::string>& options = {}) {
     std::vector<const char*> texts;
     texts.reserve(options.size());
@@ -137,7 +137,7 @@ class Matcher {
   }
 
   /// Makes the maps of both images of a rectified pair of equal size and channels, which are
-  /// copied. Throws Error for shapes that differ or are out of range. vantage_match().
+  /// copied. Throws Error for shapes that differ or are out of range. See vantage_match().
   template <typename T>
   [[nodiscard]] Pair match(const Image<T>& left, const Image<T>& right) const {
     const auto left_image = left.template as<vantage_image>();
