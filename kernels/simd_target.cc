@@ -19,6 +19,13 @@ HWY_EXPORT(this_target);
 
 long long built_targets() { return HWY_TARGETS; }
 
+long long target_in_use() { return HWY_DYNAMIC_DISPATCH(this_target)(); }
+
+#if HWY_ARCH_ARM_A64  // one target; Highway would ask for AES, too, which no kernel uses
+long long available_targets() { return HWY_TARGETS; }
+
+void force_target(long long /*target*/) {}
+#else
 long long available_targets() {
   // Highway reports all targets only after its choice is reset.
   const long long in_use = target_in_use();
@@ -28,13 +35,12 @@ long long available_targets() {
   return available;
 }
 
-long long target_in_use() { return HWY_DYNAMIC_DISPATCH(this_target)(); }
-
 void force_target(long long target) {
   // Highway provides this call for tests; the alternative, DisableTargets(), cannot be undone.
   hwy::SetSupportedTargetsForTest(target);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
+#endif
 
 std::string_view target_name(long long target) { return hwy::TargetName(target); }
 

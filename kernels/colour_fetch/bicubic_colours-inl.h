@@ -131,7 +131,7 @@ struct NearTaps {
 // Columns of taps that are on the surface, or replace those that are not. Branches per position
 // would be mispredicted at surface ends and on rough surfaces.
 HWY_INLINE TapColumns chosen_columns(const BicubicFetchRow& row, const Places& places,
-                                     const hn::MFromD<Values> (&on_surface)[4]) {
+                                     const hn::Mask<Values> (&on_surface)[4]) {
   const Values d;
   const Columns di;
   const TapColumns own = columns_at(places.whole);
@@ -154,7 +154,7 @@ HWY_INLINE TapColumns chosen_columns(const BicubicFetchRow& row, const Places& p
 
 // Adds the colours of known places, whose taps are `taps`.
 template <int kChannels, bool kInRange, class Taps>
-HWY_INLINE void add_colours(const BicubicFetchRow& row, Vec fraction, hn::MFromD<Values> known,
+HWY_INLINE void add_colours(const BicubicFetchRow& row, Vec fraction, hn::Mask<Values> known,
                             const Taps& taps, Vec (&colour)[kChannels]) {
   const Values d;
   const auto weights = keys_weights(d, fraction);
@@ -171,15 +171,15 @@ HWY_INLINE void add_colours(const BicubicFetchRow& row, Vec fraction, hn::MFromD
 // Same with taps of the places as they are, some of which may be on another surface.
 template <int kChannels, bool kInRange, class Taps>
 HWY_INLINE void add_colours_on_surface(const BicubicFetchRow& row, const Places& places, int first,
-                                       Vec disparity_px, hn::MFromD<Values> known, const Taps& taps,
+                                       Vec disparity_px, hn::Mask<Values> known, const Taps& taps,
                                        Vec (&colour)[kChannels]) {
   const Values d;
   const auto limit = hn::Set(d, row.gradient_limit_px);
   const auto is_on_surface = [&](int tap) HWY_ATTR {
     return hn::Le(hn::Abs(hn::Sub(taps.load(row.source_disparity_px, tap), disparity_px)), limit);
   };
-  const hn::MFromD<Values> on_surface[4] = {is_on_surface(0), is_on_surface(1), is_on_surface(2),
-                                            is_on_surface(3)};
+  const hn::Mask<Values> on_surface[4] = {is_on_surface(0), is_on_surface(1), is_on_surface(2),
+                                          is_on_surface(3)};
   if (hn::AllTrue(d, hn::And(hn::And(on_surface[0], on_surface[1]),
                              hn::And(on_surface[2], on_surface[3])))) {
     add_colours<kChannels, kInRange>(row, places.fraction, known, taps, colour);

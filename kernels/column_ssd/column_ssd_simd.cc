@@ -35,9 +35,10 @@ HWY_INLINE Vec32 add_change(Vec32 a, Vec32 b, Vec32 sum) {
   // (entering, leaving) · (1, −1). Subtracting from a second, negated row of pairs would save this
   // product but cost a load across cache lines, which is slower.
   const auto signs = hn::BitCast(d16, hn::Set(d32, static_cast<std::int32_t>(0xFFFF0001U)));
-  Vec32 odd_sum = hn::Zero(d32);
-  sum = hn::ReorderWidenMulAccumulate(d32, difference, hn::Mul(difference, signs), sum, odd_sum);
-  return hn::RearrangeToOddPlusEven(sum, odd_sum);
+  Vec32 more = hn::Zero(d32);
+  const Vec32 change = hn::ReorderWidenMulAccumulate(d32, difference, hn::Mul(difference, signs),
+                                                     hn::Zero(d32), more);
+  return hn::Add(sum, hn::RearrangeToOddPlusEven(change, more));
 }
 
 // Processes kVectors neighbouring vectors of lanes over all columns.

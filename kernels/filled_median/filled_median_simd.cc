@@ -106,7 +106,7 @@ class Group {
       }
     }
   }
-  [[nodiscard]] hn::MFromD<TagI> has_lanes() const {
+  [[nodiscard]] hn::Mask<TagI> has_lanes() const {
     return hn::FirstN(TagI(), static_cast<std::size_t>(lanes_));
   }
 
@@ -124,7 +124,7 @@ class Group {
   int lanes_ = 0;
   int lane_[kStep];               // first lane of each run
   std::ptrdiff_t offset_[kStep];  // its column less that lane
-  hn::MFromD<TagF> from_[kStep];  // its lanes and all after them
+  hn::Mask<TagF> from_[kStep];    // its lanes and all after them
 };
 
 // Sums of absolute differences of channels.

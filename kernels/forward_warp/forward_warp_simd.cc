@@ -70,7 +70,7 @@ HWY_INLINE WordBits find_bits(float gradient_limit_px, const Block& block, int f
   const Targets di;
   const auto limit = hn::Set(d, gradient_limit_px);
   const auto one = hn::Set(di, 1);
-  const auto bits_of = [d](hn::MFromD<Columns> mask) HWY_ATTR {
+  const auto bits_of = [d](hn::Mask<Columns> mask) HWY_ATTR {
     std::uint64_t bits = 0;  // little-endian
     hn::StoreMaskBits(d, mask, reinterpret_cast<std::uint8_t*>(&bits));
     return bits;

@@ -44,7 +44,7 @@ HWY_INLINE VoteVecI colour_difference(const SurfaceVoters& voters, const VotePla
 }
 
 // Planes that would hide what the other camera sees.
-HWY_INLINE hn::MFromD<VoteTag> hides(const VotePlace& place, VoteVec disparity_px) {
+HWY_INLINE hn::Mask<VoteTag> hides(const VotePlace& place, VoteVec disparity_px) {
   const VoteTag d;
   const VoteTagI di;
   const VoteVec partner = hn::Floor(hn::Add(

@@ -34,7 +34,7 @@ struct Distribution {
   alignas(64) std::uint8_t low_bytes[64];     // their low bytes, to all bytes of a lane
   alignas(64) std::uint8_t bytes[64];         // of eight bytes: to all bytes of a lane
   alignas(64) std::uint8_t candidates[64];    // no lookup: a lane's candidates
-  alignas(64) std::uint8_t upper[64];  // 8 where bytes 8 to 15 stand for a block's lower half
+  alignas(64) std::uint8_t from_120[64];      // exclusive or: 120 to 127 to bytes of the lane
 };
 constexpr Distribution distribution() {
   Distribution to{};
@@ -46,7 +46,7 @@ constexpr Distribution distribution() {
       to.low_bytes[at] = static_cast<std::uint8_t>(2 * column);
       to.bytes[at] = static_cast<std::uint8_t>(column);
       to.candidates[at] = static_cast<std::uint8_t>(byte);
-      to.upper[at] = column % 2 == 0 ? 8 : 0;
+      to.from_120[at] = column % 2 == 0 ? 120 : 112;
     }
   }
   return to;
@@ -78,9 +78,9 @@ HWY_INLINE Vec8 move_between(VecS16 start, VecS16 own) {
   const Vec8 from =
       hn::Add(hn::TableLookupBytes(hn::BitCast(d8, later), hn::Load(d8, kTo.low_bytes)),
               hn::Load(d8, kTo.candidates));
-  // Sets the top bit of all but 0 to 7, which become 8 to 15.
-  const Vec8 checked = hn::SaturatedAdd(from, hn::Set(d8, 0x78));
-  return hn::Xor(checked, hn::Load(d8, kTo.upper));
+  // Sets the top bit of all but 0 to 7, which become 120 to 127.
+  const Vec8 checked = hn::SaturatedAdd(from, hn::Set(d8, 120));
+  return hn::Xor(checked, hn::Load(d8, kTo.from_120));
 }
 HWY_INLINE Vec64 moved(Vec64 cells, Vec8 move) {
   return hn::BitCast(Tag64(), hn::TableLookupBytesOr0(hn::BitCast(Tag8(), cells), move));

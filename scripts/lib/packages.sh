@@ -13,6 +13,10 @@ readonly BUILD_PACKAGES=(
   python3 python3-dev python3-numpy python3-opencv python3-pytest pybind11-dev
 )
 
+# What building for aarch64, and running the result, needs beside that (cmake/aarch64.cmake).
+# shellcheck disable=SC2034
+readonly ARM64_PACKAGES=(g++-aarch64-linux-gnu qemu-user)
+
 # What scripts/fuzz needs beside that: clang with libFuzzer, and its OpenMP.
 # shellcheck disable=SC2034
 readonly FUZZ_PACKAGES=(clang libclang-rt-14-dev libomp-dev)
