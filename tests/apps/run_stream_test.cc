@@ -105,6 +105,16 @@ TEST_F(RunStreams, StreamsThatEndEarly) {
               missing != 0)
         << err();
   }
+  // The frame that is left out is shown as the one before it.
+  const std::string good = read_file(folder_ / "out.y4m");
+  EXPECT_EQ(shell(command(joined(search, {"--save", "preview", "--keep-going"})) + " <" +
+                  (folder_ / "cut.y4m") + " >" + (folder_ / "out.y4m")),
+            3);
+  const std::size_t frame_bytes = std::string("FRAME\n").size() + kWidth * kHeight * 3U / 2;
+  const std::string kept_going = read_file(folder_ / "out.y4m");
+  ASSERT_EQ(kept_going.size(), good.size() + frame_bytes);
+  EXPECT_EQ(kept_going.substr(0, good.size()), good);
+  EXPECT_EQ(kept_going.substr(good.size()), good.substr(good.size() - frame_bytes));
   write_file(folder_ / "text.y4m", "no video\n");
   EXPECT_EQ(shell(command({"--stereo", "-", "--packing", "sbsl", "--save", "preview", "-o", "-"}) +
                   " <" + (folder_ / "text.y4m") + " >" + (folder_ / "out.raw")),
@@ -117,63 +127,6 @@ TEST_F(RunStreams, StreamsThatEndEarly) {
             0);
   EXPECT_EQ(read_file(folder_ / "code"), "1\n");
   EXPECT_THAT(err(), HasSubstr("cannot write to standard output"));
-}
-
-/// Groups of a film have 50 frames: what follows the damage is left out up to the next one.
-TEST_F(RunStreams, FilmsOfAPipeAreReadOnBehindDamage) {
-  constexpr int kFilmFrames = 60;
-  constexpr int kGroupFrames = 50;
-  const std::string film = folder_ / "film.mkv";
-  VideoWriter writer(film, 2 * kWidth, kHeight, VideoEncoding());
-  for (int frame = 0; frame < kFilmFrames; ++frame) {
-    Photograph packed;
-    pack_stereo(read_photograph(left_ + "/" + frame_file(frame % kFrames)),
-                read_photograph(right_ + "/" + frame_file(frame % kFrames)), {}, packed);
-    writer.write(packed);
-  }
-  writer.finish();
-  const std::string report = folder_ / "report.json";
-  const auto made_of = [&](const std::string& name, const Words& more) {
-    const std::string out = folder_ / "out.y4m";
-    const Words preview = words(
-        "--stereo - --packing sbsl --disparities=0:9 --method ssd --save preview "
-        "--preview-range 0:9 -o - --quiet");
-    const int code = shell(command(joined(joined(preview, {"--report", report}), more)) + " <" +
-                           name + " >" + out);
-    return std::pair(code, read_file(out));
-  };
-  const auto [sound, whole] = made_of(film, {});
-  ASSERT_EQ(sound, 0) << err();
-  const std::size_t frame_bytes = std::string("FRAME\n").size() + 3U * kWidth * kHeight;
-  const std::size_t header = whole.size() - kFilmFrames * frame_bytes;
-
-  std::string bytes = read_file(film);
-  for (std::size_t i = bytes.size() * 4 / 10; i < bytes.size() * 4 / 10 + 300; ++i) {
-    bytes[i] = static_cast<char>(bytes[i] ^ 0x5a);
-  }
-  write_file(folder_ / "damaged.mkv", bytes);
-  EXPECT_EQ(made_of(folder_ / "damaged.mkv", {}).first, 1);
-  EXPECT_THAT(err(), HasSubstr("and what depends on it"));
-
-  const auto [code, rest] = made_of(folder_ / "damaged.mkv", {"--keep-going"});
-  EXPECT_EQ(code, 3) << err();
-  const nlohmann::json results = read_json(report)["results"];
-  ASSERT_EQ(results["skipped"].size(), 1U);
-  const auto bad = results["skipped"][0]["frame"].get<std::size_t>();
-  EXPECT_LT(bad, std::size_t{kGroupFrames});
-  EXPECT_THAT(
-      results["remarks"].dump(),
-      HasSubstr(std::to_string(kGroupFrames - bad - 1) +
-                " frames are missing before standard input frame " + std::to_string(bad + 1)));
-  // The frame that is left out is shown as the one before it.
-  constexpr std::size_t kBehind = kFilmFrames - kGroupFrames;
-  ASSERT_EQ(rest.size(), header + (bad + 1 + kBehind) * frame_bytes);
-  const auto frames = [&](const std::string& video, std::size_t first, std::size_t count) {
-    return video.substr(header + first * frame_bytes, count * frame_bytes);
-  };
-  EXPECT_TRUE(frames(rest, 0, bad) == frames(whole, 0, bad));
-  EXPECT_TRUE(frames(rest, bad, 1) == frames(rest, bad - 1, 1));
-  EXPECT_TRUE(frames(rest, bad + 1, kBehind) == frames(whole, kGroupFrames, kBehind));
 }
 
 TEST_F(RunStreams, WrongOptions) {

@@ -78,6 +78,7 @@ class LibavFunctions {
   VANTAGE_LATE_FUNCTION(codec_, avcodec_receive_frame);
   VANTAGE_LATE_FUNCTION(codec_, avcodec_receive_packet);
   VANTAGE_LATE_FUNCTION(codec_, avcodec_send_frame);
+  VANTAGE_LATE_FUNCTION(codec_, avcodec_flush_buffers);
   VANTAGE_LATE_FUNCTION(codec_, avcodec_send_packet);
 
   VANTAGE_LATE_FUNCTION(resample_, swr_alloc_set_opts2);

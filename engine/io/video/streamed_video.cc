@@ -66,17 +66,20 @@ void StreamedVideo::fail_cut() {
   throw Error(fmt::format("{}: the stream ends inside it or is damaged", describe(decoded_)));
 }
 
-void StreamedVideo::fail_damaged(int result) {
+void StreamedVideo::note_damage(int result) {
   if (is_raw_) {
     fail_cut();
   }
+  damage_ = result;
   waits_for_key_frame_ = true;
-  is_after_damage_ = true;
-  if (shown_s_) {
-    *shown_s_ += 1 / rate_.per_second();
-  }
+  libav().avcodec_send_packet(codec_.get(), nullptr);
+}
+
+void StreamedVideo::fail_damaged() {
+  libav().avcodec_flush_buffers(codec_.get());
+  ++left_out_;
   throw Error(fmt::format("{}: is damaged ({}), and what depends on it", describe(decoded_++),
-                          libav_message(result)));
+                          libav_message(std::exchange(damage_, 0))));
 }
 
 void StreamedVideo::feed() {
@@ -107,7 +110,8 @@ void StreamedVideo::feed() {
   }
   frames_end_ = packet_->pos >= 0 ? packet_->pos + packet_->size : -1;
   if (!is_whole) {
-    fail_damaged(AVERROR_INVALIDDATA);
+    note_damage(AVERROR_INVALIDDATA);
+    return;
   }
   if (waits_for_key_frame_ && (packet_->flags & AV_PKT_FLAG_KEY) == 0) {
     return;
@@ -115,7 +119,7 @@ void StreamedVideo::feed() {
   waits_for_key_frame_ = false;
   result = libav().avcodec_send_packet(codec_.get(), packet_.get());
   if (result < 0) {
-    fail_damaged(result);
+    note_damage(result);
   }
 }
 
@@ -126,8 +130,10 @@ void StreamedVideo::note_time() {
     shown_s_ = static_cast<double>(time) * av_q2d(stream_->time_base);
   }
   // Elsewhere a gap is the camera's: its times follow no rate exactly.
-  const bool tells = std::exchange(is_after_damage_, false) && before_s && shown_s_;
-  frames_missing_ = tells ? frames_between(*before_s, *shown_s_, rate_) : 0;
+  const int left_out = std::exchange(left_out_, 0);
+  const int gap =
+      left_out > 0 && before_s && shown_s_ ? frames_between(*before_s, *shown_s_, rate_) : 0;
+  frames_missing_ = std::max(0, gap - left_out);
 }
 
 bool StreamedVideo::decode_next(VideoPicture& picture) {
@@ -137,13 +143,20 @@ bool StreamedVideo::decode_next(VideoPicture& picture) {
       feed();
       continue;
     }
+    // Frames before the damage are shown first: the decoder may have held some back.
+    if (damage_ != 0 && result < 0) {
+      fail_damaged();
+    }
     if (result == AVERROR_EOF) {
       ended_ = true;
       break;
     }
     if (result < 0 || frame_->decode_error_flags != 0 ||
         (frame_->flags & AV_FRAME_FLAG_CORRUPT) != 0) {
-      fail_damaged(result < 0 ? result : AVERROR_INVALIDDATA);
+      if (damage_ == 0) {
+        note_damage(result < 0 ? result : AVERROR_INVALIDDATA);
+      }
+      continue;
     }
     note_time();
     picture = VideoPicture(*frame_, converters_, describe(decoded_), {.lossy_codec = lossy_codec_});

@@ -48,7 +48,9 @@ class StreamedVideo final : public FrameSource {
   /// Gives the decoder the next packet, or the end.
   void feed();
   [[noreturn]] void fail_cut();
-  [[noreturn]] void fail_damaged(int result);
+  /// Lets the decoder give the frames before the damage.
+  void note_damage(int result);
+  [[noreturn]] void fail_damaged();
   /// Of the frame just decoded: when it is shown, and how many the damage before it took.
   void note_time();
 
@@ -65,9 +67,10 @@ class StreamedVideo final : public FrameSource {
   bool waits_for_key_frame_ = true;   ///< packets before one cannot be decoded
   std::vector<std::string> remarks_;  ///< of the next frame
   std::shared_ptr<PictureConverters> converters_ = std::make_shared<PictureConverters>();
-  int decoded_ = 0;  ///< frames, and those left out for damage
-  bool is_after_damage_ = false;
-  int frames_missing_ = 0;         ///< beside decoded_, before the last frame
+  int decoded_ = 0;                ///< frames, and those left out for damage
+  int damage_ = 0;                 ///< of the packet behind those that the decoder holds; 0: none
+  int left_out_ = 0;               ///< frames, since the last good one
+  int frames_missing_ = 0;         ///< beside them, before the last good one
   std::optional<double> shown_s_;  ///< when the last frame is shown, in seconds; empty: not known
   std::int64_t frames_end_ = -1;   ///< in bytes of the stream; -1: not known
   bool ended_ = false;
