@@ -7,6 +7,17 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+if(CMAKE_CROSSCOMPILING)  # by the toolchain file, which names the architecture
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${VANTAGE_DEBIAN_ARCHITECTURE})
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS
+    ${CMAKE_SYSROOT}/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}
+    ${CMAKE_SYSROOT}/lib/${CMAKE_LIBRARY_ARCHITECTURE})
+  # What cpack runs asks for the packages of the other architecture.
+  set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_BINARY_DIR}/cpack_environment.cmake)
+  file(WRITE ${CPACK_PROJECT_CONFIG_FILE}
+    "set(ENV{DEB_HOST_ARCH} ${VANTAGE_DEBIAN_ARCHITECTURE})\n"
+    "set(ENV{DPKG_ADMINDIR} ${CMAKE_SYSROOT}/var/lib/dpkg)\n")
+endif()
 
 # packages_of(VARIABLE LIBRARY...): the packages of libraries that are opened at run time
 # (engine/late_library.h), which dpkg-shlibdeps does not see.

@@ -4,13 +4,13 @@ install(TARGETS vantage RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT pr
 file(CREATE_LINK vantage ${PROJECT_BINARY_DIR}/apps/vantage-asp SYMBOLIC)
 install(FILES ${PROJECT_BINARY_DIR}/apps/vantage-asp DESTINATION ${CMAKE_INSTALL_BINDIR}
   COMPONENT program)
-if(NOT CMAKE_CROSSCOMPILING AND NOT VANTAGE_SANITIZE)
+if(NOT VANTAGE_SANITIZE)
   find_package(Python3 REQUIRED COMPONENTS Interpreter)
   set(reference_dir ${PROJECT_BINARY_DIR}/reference)
   file(GLOB reference_scripts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/reference/*.py)
   add_custom_command(OUTPUT ${reference_dir}/man/vantage.1.gz
     COMMAND ${Python3_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/cmake/reference/write.py
-            $<TARGET_FILE:vantage> ${reference_dir}
+            ${VANTAGE_COMMAND} ${reference_dir}
     DEPENDS vantage ${reference_scripts} COMMENT "Writing manual pages and completion" VERBATIM)
   add_custom_target(vantage_reference ALL DEPENDS ${reference_dir}/man/vantage.1.gz)
   # Optional: who builds the program alone may install it without them.

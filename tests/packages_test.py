@@ -3,10 +3,12 @@
 
 usage: packages_test.py BUILD_DIR
 """
+import io
 import pathlib
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
 import unittest
 
@@ -52,6 +54,15 @@ class PackagesTest(unittest.TestCase):
         for library in ("libtbb", "libopencv-core", "libopencv-imgcodecs", "libopencv-video",
                         "libavformat", "libavcodec"):
             self.assertIn(library, depends)
+
+    def test_architecture_is_that_of_the_program(self):
+        package = self.packages["vantage"]
+        contents = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], check=True,
+                                  capture_output=True).stdout
+        with tarfile.open(fileobj=io.BytesIO(contents)) as archive:
+            header = archive.extractfile("./usr/bin/vantage").read(20)
+        machine = int.from_bytes(header[18:20], "little")
+        self.assertEqual(machine, {"amd64": 62, "arm64": 183}[field(package, "Architecture")])
 
     def test_library_has_headers_archives_and_the_cmake_package(self):
         found = files(self.packages["libvantage-dev"])

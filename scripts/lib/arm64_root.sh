@@ -23,6 +23,7 @@ apt=$root/apt
 database=$root/var/lib/dpkg  # dpkg-query and dpkg-shlibdeps read it
 mkdir -p "$apt/state/lists/partial" "$apt/cache/archives/partial" "$database/info" "$database/updates"
 touch "$apt/status"
+echo 1 >"$database/info/format"
 cat >"$apt/apt.conf" <<TEXT
 APT { Architecture "arm64"; Architectures "arm64"; Install-Recommends "false"; Sandbox::User ""; };
 Dir { State "$apt/state"; State::status "$apt/status"; Cache "$apt/cache"; };

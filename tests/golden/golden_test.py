@@ -5,12 +5,14 @@ results is a decision, made with --update and explained in its commit.
 usage: golden_test.py VANTAGE [--update]
 
 golden.txt beside this file holds one command in each paragraph and, below it, the files that it
-writes, each with the first 16 digits of its SHA-256. Commands run in order in one folder, on one to
-three threads in turn, and every other one on SSE4: neither changes a result."""
+writes, each with the first 16 digits of its SHA-256, and with a processor where others give other
+bits. Commands run in order in one folder, on one to three threads in turn, and every other one on
+the least instruction set: neither changes a result."""
 
 import argparse
 import hashlib
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -29,19 +31,28 @@ WORDS = {
 
 
 def paragraphs():
-    """The commands of golden.txt, each with {file: checksum}."""
+    """The commands of golden.txt, each with {file and processor: checksum}."""
     for text in GOLDEN.read_text(encoding="utf-8").split("\n\n"):
         lines = [line for line in text.splitlines() if line and not line.startswith("#")]
         if lines:
-            yield lines[0], dict(reversed(line.split()) for line in lines[1:])
+            yield lines[0], {file: digits for digits, file in
+                             (line.split(maxsplit=1) for line in lines[1:])}
 
 
-def run(program, command, index):
+def build_of(program):
+    """Its processor and least instruction set."""
+    said = subprocess.run([program, "--version", "--verbose"], capture_output=True, text=True,
+                          check=True).stdout
+    return (re.search("system .* (.*)", said)[1],
+            re.search("available here +(.*)", said)[1].split()[-1])
+
+
+def run(program, command, index, instruction_set):
     words = []
     for word in shlex.split(command):
         words += WORDS[word].split() if word in WORDS else [word]
     if words[0] != "generate":
-        words += ["--threads", str(1 + index % 3), "--isa", ["best", "SSE4"][index % 2], "--quiet"]
+        words += ["--threads", str(1 + index % 3), "--isa", instruction_set, "--quiet"]
     done = subprocess.run([program, *words], capture_output=True, text=True, check=False)
     if done.returncode != 0:
         return f"exit code {done.returncode}: {done.stderr.strip()}"
@@ -62,14 +73,17 @@ def main():
     header = "\n".join(line for line in GOLDEN.read_text(encoding="utf-8").splitlines()
                        if line.startswith("#"))
     updated, failures, files = [header], 0, 0
+    processor, least_instruction_set = build_of(program)
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         for index, (command, expected) in enumerate(paragraphs()):
-            error = run(program, command, index)
-            seen = {file: checksum(file) for file in expected}
-            updated.append("\n".join([command, *(f"  {seen[file]} {file}" for file in seen)]))
-            wrong = [file for file in expected if seen[file] != expected[file]]
-            files += len(expected)
+            error = run(program, command, index, ["best", least_instruction_set][index % 2])
+            seen = {file: checksum(*file.split()[:1]) for file in expected
+                    if file.split()[1:] in ([], [processor])}
+            lines = {**expected, **seen}
+            updated.append("\n".join([command, *(f"  {lines[file]} {file}" for file in lines)]))
+            wrong = [file for file in seen if seen[file] != expected[file]]
+            files += len(seen)
             if error or (wrong and not arguments.update):
                 failures += 1
                 print(f"vantage {command}: {error or 'differs: ' + ', '.join(wrong)}")
