@@ -21,7 +21,7 @@ long long built_targets() { return HWY_TARGETS; }
 
 long long target_in_use() { return HWY_DYNAMIC_DISPATCH(this_target)(); }
 
-#if HWY_ARCH_ARM_A64  // one target; Highway would ask for AES, too, which no kernel uses
+#if HWY_ARCH_ARM_A64 || HWY_ARCH_WASM  // one target; on ARM Highway would ask for AES, too
 long long available_targets() { return HWY_TARGETS; }
 
 void force_target(long long /*target*/) {}

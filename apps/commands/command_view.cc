@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 #include "apps/commands/commands.h"
 #include "apps/inputs/input_limits.h"
@@ -16,6 +19,8 @@
 #include "apps/settings/common_options.h"
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/encoded_text.h"
+#include "engine/io/images/photograph_io.h"
 #include "engine/options/settings.h"
 #include "engine/options/synthesis_settings.h"
 
@@ -28,6 +33,12 @@ struct ViewJob {
   CommonOptions common;
   std::string output;
 };
+
+std::string as_base64(const std::string& file_name, Image<std::uint8_t> pixels) {
+  std::vector<std::uint8_t> bytes;
+  encode_photograph(file_name, Photograph{std::move(pixels)}, bytes);
+  return encode_base64(bytes);
+}
 
 ViewRange to_view_range(const SettingValue& value) {
   return from_parts(value, ':', 2, "A:B with two positions in baselines, such as -0.5:1.5",
@@ -102,7 +113,7 @@ int view_run(const ViewJob& job, const Settings& settings, FileChecks& files) {
   }
   CommandWork work(settings, job.common);
   make_folder(folder);
-  ViewPage page(job.page, folder.filename().string());
+  ViewPage page(job.page, folder.filename().string(), as_base64);
   std::size_t bytes = 0;
   int shown = 0;
   Progress progress("view", "frames",
@@ -180,7 +191,7 @@ int command_view(const Arguments& arguments) {
   const PairWithMaps pair = read_pair(job.pair, settings, job.common, execution, report);
   const std::string names = file_name(job.pair.left) + " and " + file_name(job.pair.right);
   const std::string page = report.timed_compute("page", [&] {
-    ViewPage made(job.page, "");
+    ViewPage made(job.page, "", as_base64);
     const std::string script = made.add_frame(0, pair, execution);
     return made.html(names, {}, script);
   });

@@ -18,7 +18,6 @@
 #include "engine/error.h"
 #include "engine/image/eight_bit.h"
 #include "engine/io/files/encoded_text.h"
-#include "engine/io/images/photograph_io.h"
 #include "engine/io/images/preview.h"
 #include "engine/synthesis/view_synthesizer.h"
 #include "engine/view_geometry/depth_resolution.h"
@@ -104,12 +103,6 @@ Image<std::uint8_t> make_palette() {
     ramp.at(x, 0) = static_cast<float>(x);
   }
   return colour_preview(ramp.view(), 0, kColours - 1);
-}
-
-std::string as_base64(const std::string& file_name, Image<std::uint8_t> pixels) {
-  std::vector<std::uint8_t> bytes;
-  encode_photograph(file_name, Photograph{std::move(pixels)}, bytes);
-  return encode_base64(bytes);
 }
 
 SettingValue intensity_of(const PairWithMaps& pair, const SynthesisOptions& options,
@@ -221,11 +214,12 @@ void ViewPageOptions::validate() const {
   synthesis.validate();
 }
 
-ViewPage::ViewPage(ViewPageOptions options, std::string folder)
+ViewPage::ViewPage(ViewPageOptions options, std::string folder, PictureEncoder encode)
     : options_(std::move(options)),
       is_lossless_(options_.images.value_or(
                        folder.empty() ? PageImages::kPng : PageImages::kJpeg) == PageImages::kPng),
-      folder_(std::move(folder)) {
+      folder_(std::move(folder)),
+      encode_(std::move(encode)) {
   options_.validate();
 }
 
@@ -250,8 +244,8 @@ std::string ViewPage::add_frame(int number, const PairWithMaps& pair, Execution&
   std::array<std::string, 4> pictures;
   execution.executor().parallel_for(4, [&](int k) {
     pictures[static_cast<std::size_t>(k)] =
-        k < 2 ? as_base64(image, eight_bit(k == 0 ? pair.left : pair.right))
-              : as_base64("map.png", as_numbers(k == 2 ? left_map : right_map, numbers));
+        k < 2 ? encode_(image, eight_bit(k == 0 ? pair.left : pair.right))
+              : encode_("map.png", as_numbers(k == 2 ? left_map : right_map, numbers));
   });
   frames_.push_back({{"number", number}, {"problem", ""}});
   const SettingValue frame = {
@@ -282,7 +276,7 @@ std::string ViewPage::html(const std::string& names, FrameRate rate,
                     {"version", build_info().version},
                     {"style", std::string(embedded_file("view_page/page.css"))},
                     {"script_sources", folder_.empty() ? "" : " 'self' file:"},
-                    {"palette", as_base64("palette.png", make_palette())},
+                    {"palette", encode_("palette.png", make_palette())},
                     {"scene", json_in_html(scene.dump())},
                     {"shaders", shader_elements()},
                     {"renderer", std::string(embedded_file("view_page/renderer.js"))},

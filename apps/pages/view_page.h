@@ -1,13 +1,16 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
-#include "apps/inputs/pair_input.h"
 #include "engine/execution.h"
+#include "engine/image/image.h"
 #include "engine/io/images/preview.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/options/setting_value.h"
+#include "engine/synthesis/pair_with_maps.h"
 #include "engine/synthesis/synthesis_options.h"
 
 namespace vantage::apps {
@@ -35,6 +38,11 @@ struct ViewPageOptions {
   void validate() const;
 };
 
+/// Makes text of a picture, 8-bit grey or RGB: base64 of a file of the type that its name tells.
+/// Called by several threads at once.
+using PictureEncoder =
+    std::function<std::string(const std::string& file_name, Image<std::uint8_t> pixels)>;
+
 /// An HTML page that renders views of a pair, or of the frames of a film, by itself. Photographs
 /// become 8-bit and lose an alpha channel. Intensities are regressed once for each pair, half-way
 /// between the cameras, so that brightness does not change on the way. In JPEG, disparities are
@@ -43,7 +51,7 @@ class ViewPage {
  public:
   /// `folder`: name of the folder beside the page that holds the script of each frame; empty: the
   /// page shows one pair, which is in it. Throws UsageError for invalid options.
-  ViewPage(ViewPageOptions options, std::string folder);
+  ViewPage(ViewPageOptions options, std::string folder, PictureEncoder encode);
 
   /// Adds a frame; numbers increase. Returns its script, the file script_name(number) of the
   /// folder. Throws Error when shapes differ, also from the first frame's, a side has more than
@@ -62,6 +70,7 @@ class ViewPage {
   ViewPageOptions options_;
   bool is_lossless_;
   std::string folder_;
+  PictureEncoder encode_;
   SettingValue scene_;  ///< null before the first frame
   SettingValue frames_ = SettingValue::array();
   PreviewRange colours_;  ///< of the maps of all frames

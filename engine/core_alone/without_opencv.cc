@@ -1,5 +1,7 @@
 // What the core takes from OpenCV, for a build of the core alone. Callers ask has_opencv() first.
 #include "engine/error.h"
+#include "engine/io/images/black_border.h"
+#include "engine/io/images/opencv_setup.h"
 #include "engine/rectification/feature_matches.h"
 #include "engine/synthesis/background_inpainting.h"
 #include "engine/with_opencv.h"
@@ -12,6 +14,10 @@ std::vector<PointMatch> match_features(const Photograph& /*left*/, const Photogr
                                        const FeatureMatchOptions& /*options*/) {
   throw Error("points that images share are found by OpenCV, which this build is without");
 }
+
+void leave_opencv_to_host() {}
+
+Mask black_border(const Photograph& /*photograph*/) { return {}; }
 
 std::size_t inpainting_bytes(int /*width*/, int /*height*/, int /*channels*/) { return 0; }
 

@@ -8,12 +8,12 @@
 #include <string>
 #include <utility>
 
-#include "engine/build_info.h"
 #include "engine/error.h"
+#include "engine/image/left_out.h"
 #include "engine/image/stereo_packing.h"
 #include "engine/image/white_level.h"
+#include "engine/io/images/black_border.h"
 #include "engine/io/images/opencv_setup.h"
-#include "engine/io/images/scene_mask.h"
 #include "engine/library/handles.h"
 #include "engine/library/pictures.h"
 #include "engine/library/vantage_c.h"
@@ -64,7 +64,8 @@ void match_pair(const vantage_matcher& matcher, vantage_pair& result) {
   require_equal_shapes(pair.left, pair.right);
   Photograph* const both[] = {&pair.left, &pair.right};
   result.remarks = scale_to_white_level(both, options.white_level);
-  leave_out_of_pair({}, pair.left, pair.right);
+  leave_out(pair.left, black_border(pair.left));
+  leave_out(pair.right, black_border(pair.right));
   if (options.rows == RowMode::kAuto && !options.match.disparities_y) {
     result.rows =
         correct_pair(expects_negative_disparities(options.match), execution, pair, result.remarks);
@@ -110,10 +111,7 @@ void write_values(const vantage_pair& pair, const DisparityMaps& maps, vantage_s
 
 using namespace vantage;  // NOLINT(google-build-using-namespace): whose calls these functions are
 
-const char* vantage_version(void) {
-  static const std::string version = build_info().version;
-  return version.c_str();
-}
+const char* vantage_version(void) { return VANTAGE_VERSION; }
 
 const char* vantage_last_error(void) { return last_error().c_str(); }
 

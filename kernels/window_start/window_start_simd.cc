@@ -52,7 +52,9 @@ HWY_INLINE hn::VFromD<D64> energies_at(D64 d64, const CoarseEnergies& coarse, in
       bits[j] = coarse.offset_bits[x + j];
     }
     const auto down = hn::Load(d64, bits);
-    return hn::Or(hn::Shr(low, down), hn::Shl(high, hn::Sub(hn::Set(d64, 64), down)));
+    // By 64 − down in two steps: not all targets shift by all bits of a lane.
+    const auto up = hn::Sub(hn::Set(d64, 63), down);
+    return hn::Or(hn::Shr(low, down), hn::Shl(hn::ShiftLeft<1>(high), up));
   }
 }
 

@@ -247,6 +247,8 @@ HWY_INLINE Vec16 from_beside(Vec16 words) {
   const Vec64 lanes = hn::BitCast(Tag64(), words);
   if constexpr (kLanes == 0) {
     return words;
+  } else if constexpr (kLanes >= 4 || kLanes <= -4) {
+    return hn::Zero(d16);  // beyond the window; not all targets shift by all bits of a lane
   } else if constexpr (kLanes > 0) {
     return hn::BitCast(d16, hn::ShiftLeft<16 * kLanes>(lanes));
   } else {

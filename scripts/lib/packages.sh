@@ -39,6 +39,10 @@ readonly TEST_PACKAGES=(
 # shellcheck disable=SC2034
 readonly BROWSER_PACKAGES=(chromium)
 
+# What the page that matches in the browser is built with.
+# shellcheck disable=SC2034
+readonly WASM_PACKAGES=(emscripten)
+
 # What scripts/package needs beside BUILD_PACKAGES.
 # shellcheck disable=SC2034
 readonly PACKAGING_PACKAGES=(dpkg-dev file "${WHEEL_PACKAGES[@]}")

@@ -23,6 +23,10 @@ PAGES = {"README.md": "about.md", "CONTRIBUTING.md": "contributing.md", "CHANGEL
 # Pages that are made for the site, as documents link to them → on the site.
 MADE_PAGES = {"docs/gallery.md": "gallery.md", "docs/commands/index.md": "commands/index.md",
               "docs/python-reference.md": "python-reference.md", "docs/cpp/index.html": "cpp/index.html"}
+# The page that matches in the browser, of preset wasm. A site without it has no links to it.
+BROWSER_PAGE = ROOT / "build/wasm/vantage.html"
+if BROWSER_PAGE.is_file():
+    MADE_PAGES["docs/match.html"] = "match.html"
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 
 
@@ -66,6 +70,10 @@ def stage(reference, gallery, out):
     shutil.copytree(reference, out / "commands")
     shutil.copy(reference.parent / "python.md", out / "python-reference.md")
     shutil.copytree(gallery, out, dirs_exist_ok=True)
+    if BROWSER_PAGE.is_file():
+        shutil.copy(BROWSER_PAGE, out / "match.html")
+    else:
+        print("site: without the page that matches in the browser, which preset wasm builds")
 
 
 class Page(html.parser.HTMLParser):
