@@ -52,7 +52,8 @@ struct Image {
   std::ptrdiff_t row_bytes = 0;  ///< From a row to the next one; 0: rows follow each other.
   bool is_bgr = false;           ///< Whether blue is first and red third.
 
-  /// The same as Struct: vantage_image or, of a T that is not constant, vantage_picture.
+  /// This image as a struct of the C interface. Struct is vantage_image, or vantage_picture where T
+  /// is not constant.
   template <typename Struct>
   [[nodiscard]] Struct as() const {
     Struct image{};
@@ -121,9 +122,9 @@ class Pair {
 /// Thread rule: match() may be called concurrently; calls share the threads.
 class Matcher {
  public:
-  /// Of options of `vantage match` and `vantage synth`: Matcher({"preset=quality",
-  /// "disparities=0:63"}). Without any: preset balanced, disparities found for each pair, all
-  /// processors. Throws Error for an unknown option, a wrong value, and what cannot be combined.
+  /// Takes options of `vantage match` and `vantage synth`, such as Matcher({"preset=quality",
+  /// "disparities=0:63"}). The defaults are the preset balanced, a range of disparities that is
+  /// found for each pair, and all processors. Throws Error for an unknown option, a wrong value, and what cannot be combined.
   /// See vantage_matcher_create().
   explicit Matcher(const std::vector<std::string>& options = {}) {
     std::vector<const char*> texts;

@@ -51,7 +51,7 @@ class StreamedVideo final : public FrameSource {
   /// Lets the decoder give the frames before the damage.
   void note_damage(int result);
   [[noreturn]] void fail_damaged();
-  /// Of the frame just decoded: when it is shown, and how many the damage before it took.
+  /// Sets shown_s_ and frames_missing_ for the frame that was just decoded.
   void note_time();
 
   std::unique_ptr<StreamInput> bytes_;
