@@ -124,8 +124,8 @@ class Matcher {
  public:
   /// Takes options of `vantage match` and `vantage synth`, such as Matcher({"preset=quality",
   /// "disparities=0:63"}). The defaults are the preset balanced, a range of disparities that is
-  /// found for each pair, and all processors. Throws Error for an unknown option, a wrong value, and what cannot be combined.
-  /// See vantage_matcher_create().
+  /// found for each pair, and all processors. Throws Error for an unknown option, a wrong value,
+  /// and what cannot be combined. See vantage_matcher_create().
   explicit Matcher(const std::vector<std::string>& options = {}) {
     std::vector<const char*> texts;
     texts.reserve(options.size());

@@ -137,9 +137,9 @@ class Task {
 
   async match({left, right, options, names}, answer) {
     const matcher = this.matcher(options);
-    const images = [this.imageOf(left), this.imageOf(right)];
     let pair = 0;
     try {
+      const images = [this.imageOf(left), this.imageOf(right)];
       const start = performance.now();
       pair = this.handleOf("vantage_match", matcher, ...images);
       const milliseconds = performance.now() - start;
