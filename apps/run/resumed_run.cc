@@ -12,7 +12,7 @@
 #include "engine/error.h"
 #include "engine/io/files/encoded_text.h"
 #include "engine/io/files/json_text.h"
-#include "engine/io/video/stream_input.h"
+#include "engine/io/video/streams/stream_input.h"
 #include "engine/options/emptied_value.h"
 #include "engine/options/match_settings.h"
 #include "engine/sequence/journal/run_journal.h"

@@ -1,5 +1,5 @@
 // Videos that come through a pipe.
-#include "engine/io/video/streamed_video.h"
+#include "engine/io/video/streams/streamed_video.h"
 
 #include <sys/stat.h>
 

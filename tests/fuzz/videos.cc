@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "engine/io/video/frame_source.h"
-#include "engine/io/video/streamed_video.h"
+#include "engine/io/video/streams/streamed_video.h"
 #include "engine/io/video/video_structure.h"
 #include "tests/fuzz/target.h"
 

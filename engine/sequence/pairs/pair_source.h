@@ -17,7 +17,7 @@
 #include "engine/image/white_level.h"
 #include "engine/io/images/scene_mask.h"
 #include "engine/io/video/frame_source.h"
-#include "engine/io/video/raw_video_shape.h"
+#include "engine/io/video/streams/raw_video_shape.h"
 #include "engine/rectification/kitti_cameras.h"
 #include "engine/sequence/pairs/frame_range.h"
 

@@ -7,7 +7,7 @@
 #include "engine/io/video/film_format.h"
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/libav.h"
-#include "engine/io/video/raw_video_shape.h"
+#include "engine/io/video/streams/raw_video_shape.h"
 #include "engine/io/video/writing/frame_conversion.h"
 #include "engine/io/video/writing/stream_output.h"
 

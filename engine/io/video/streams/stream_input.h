@@ -8,7 +8,7 @@
 
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/libav.h"
-#include "engine/io/video/raw_video_shape.h"
+#include "engine/io/video/streams/raw_video_shape.h"
 
 struct AVIOContext;
 

@@ -10,8 +10,8 @@
 #include "engine/io/video/frame_rate.h"
 #include "engine/io/video/frame_source.h"
 #include "engine/io/video/libav.h"
-#include "engine/io/video/raw_video_shape.h"
-#include "engine/io/video/stream_input.h"
+#include "engine/io/video/streams/raw_video_shape.h"
+#include "engine/io/video/streams/stream_input.h"
 #include "engine/io/video/video_picture.h"
 
 namespace vantage {

@@ -1,4 +1,4 @@
-#include "engine/io/video/stream_input.h"
+#include "engine/io/video/streams/stream_input.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "engine/io/video/streamed_video.h"
+#include "engine/io/video/streams/streamed_video.h"
 
 #include <fmt/format.h>
 
