@@ -8,6 +8,6 @@ RUN scripts/package
 FROM debian:12-slim
 COPY --from=build /vantage/build/packages/*vantage_*.deb /tmp/packages/
 RUN apt-get update \
- && apt-get install -y --no-install-recommends /tmp/packages/*.deb \
+ && apt-get install -y --no-install-recommends /tmp/packages/*.deb libcurl4 ca-certificates \
  && rm -rf /tmp/packages /var/lib/apt/lists/*
 ENTRYPOINT ["vantage"]

@@ -15,12 +15,15 @@
 
 #include "apps/commands/commands.h"
 #include "apps/inputs/input_limits.h"
+#include "apps/process/interrupt.h"
 #include "apps/process/process_setup.h"
 #include "apps/process/tell.h"
 #include "apps/settings/option_reference.h"
 #include "apps/settings/suggestions.h"
 #include "engine/build_info.h"
 #include "engine/error.h"
+#include "engine/io/files/remote_files.h"
+#include "engine/io/store/store_files.h"
 #include "engine/message_line.h"
 #include "engine/options/setting_value.h"
 #include "engine/quoted_text.h"
@@ -107,6 +110,18 @@ int fail(const std::string& command, const std::string& message, int exit_code) 
   return exit_code;
 }
 
+/// Addresses are opened while it lives. It ends transfers before the libraries that they use are
+/// unloaded.
+class AddressesInUse {
+ public:
+  AddressesInUse() {
+    vantage::install_remote_files(vantage::make_store_files(vantage::apps::is_end_requested));
+  }
+  AddressesInUse(const AddressesInUse&) = delete;
+  AddressesInUse& operator=(const AddressesInUse&) = delete;
+  ~AddressesInUse() { vantage::install_remote_files(nullptr); }
+};
+
 /// The reader of stdout has closed it, as `head` does: not an error to report.
 constexpr int kExitUnread = 128 + SIGPIPE;
 
@@ -156,6 +171,7 @@ int run(Arguments arguments, std::string& name) {
 
 int main(int argc, char** argv) {
   vantage::apps::set_up_process();
+  const AddressesInUse addresses;
   std::string command;
   int exit_code = vantage::apps::kExitDone;
   try {

@@ -64,10 +64,11 @@ configure_file(cmake/debian/changelog.in changelog @ONLY)
 execute_process(COMMAND gzip -9nf ${PROJECT_BINARY_DIR}/changelog COMMAND_ERROR_IS_FATAL ANY)
 
 packages_of(late_libraries opencv_imgcodecs opencv_video ${TIFF_LIBRARY} ${libav_LINK_LIBRARIES})
-# Only boards with markers and --show need them, and they bring a window system.
-packages_of(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS opencv_aruco)
+# Only boards with markers and --show need them, and they bring a window system; only addresses need
+# libcurl and the certificates.
+packages_of(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS opencv_aruco ${libcurl_LINK_LIBRARIES})
 string(APPEND CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
-  ", libopencv-highgui${OpenCV_VERSION_MAJOR}0${OpenCV_VERSION_MINOR}")
+  ", ca-certificates, libopencv-highgui${OpenCV_VERSION_MAJOR}0${OpenCV_VERSION_MINOR}")
 debian_package(program vantage graphics "${late_libraries}"
   "disparity maps and new views of stereo pairs and sequences"
   "Turns rectified stereo pairs, folders of pairs and stereo videos into

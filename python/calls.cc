@@ -6,6 +6,7 @@
 #include <thread>  // and pthread_atfork(), of the library that threads are made with
 
 #include "engine/error.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/message_line.h"
 
 namespace vantage::python {
@@ -29,7 +30,9 @@ EngineCall::EngineCall() {
         "this process was forked while another thread computed, and lacks its threads: start "
         "worker processes with the method 'spawn' or 'forkserver', or before anything computes");
   }
-  ++calls;
+  if (calls++ == 0) {
+    forget_remote_files();  // what is at an address may be another file by now
+  }
 }
 
 EngineCall::~EngineCall() { --calls; }

@@ -54,6 +54,8 @@ void remove_files_on_signals() {
 
 void request_end() { interrupted.store(true); }
 
+bool is_end_requested() { return interrupted.load(); }
+
 const std::atomic<bool>& interrupt_flag() {
   // Once: a later call must not take back what the first signal has set.
   [[maybe_unused]] static const bool is_handled = [] {

@@ -16,4 +16,7 @@ const std::atomic<bool>& interrupt_flag();
 /// Sets that flag, as the first signal does.
 void request_end();
 
+/// The flag, for work that ends early where a command waits for it. Thread rule: any thread.
+bool is_end_requested();
+
 }  // namespace vantage::apps

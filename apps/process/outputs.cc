@@ -13,6 +13,7 @@
 #include "engine/io/files/existing_files.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/numbered_part.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/maps/map_formats.h"
 #include "engine/rectification/stereo_calibration.h"
 
@@ -63,6 +64,10 @@ std::vector<std::string> extensions_of(OutputKind kind) {
 }
 
 void require_writable(const fs::path& path) {
+  if (is_address(path)) {
+    remote_files(path).check_writable(path.string());
+    return;
+  }
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     throw Error(fmt::format("{}: cannot be written, it is a folder", path.string()));
@@ -86,8 +91,8 @@ bool has_extension(const fs::path& path, const std::vector<std::string>& extensi
 
 FileChecks::FileChecks(const Settings& settings) {
   for (const std::string& path : settings.input_paths()) {
-    for (const fs::path& file :
-         fs::exists(path) ? std::vector<fs::path>{path} : calibration_files(path)) {
+    for (const fs::path& file : is_address(path) || fs::exists(path) ? std::vector<fs::path>{path}
+                                                                     : calibration_files(path)) {
       add_input(file);
     }
   }
@@ -95,7 +100,7 @@ FileChecks::FileChecks(const Settings& settings) {
 
 bool FileChecks::find_id(const fs::path& path, FileId& id) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) {
+  if (is_address(path) || ::stat(path.c_str(), &status) != 0) {
     return false;
   }
   id = {static_cast<std::uint64_t>(status.st_dev), static_cast<std::uint64_t>(status.st_ino)};
@@ -173,6 +178,7 @@ void FileChecks::add_output(const std::string& path, const std::string& option, 
 }
 
 void FileChecks::add_made_file(const fs::path& path, const std::string& option) {
+  require_local_folder(path);
   add_named_file(path, option);
   made_files_.push_back(path);
 }
@@ -214,6 +220,7 @@ void FileChecks::add_named_file(const fs::path& path, const std::string& option)
 }
 
 void FileChecks::add_made_folder(const fs::path& path, const std::string& option) {
+  require_local_folder(path);
   FileId id;
   if (!find_id(path, id)) {
     return;  // nothing can be in it
@@ -241,6 +248,9 @@ void FileChecks::add_made_folder(const fs::path& path, const std::string& option
 }
 
 fs::path resolved(const fs::path& path) {
+  if (is_address(path)) {
+    return path.lexically_normal();  // one slash less, as all of them
+  }
   std::error_code ignored;
   const fs::path absolute = fs::absolute(through_links(path), ignored);
   const fs::path canonical = fs::weakly_canonical(absolute, ignored);

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/io/files/encoded_text.h"
 #include "engine/io/files/json_text.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/video/streams/stream_input.h"
 #include "engine/options/emptied_value.h"
 #include "engine/options/match_settings.h"
@@ -75,7 +76,7 @@ std::string sources_of(const RunJob& job, const Settings& settings) {
     const auto stored = [](const SettingValue& path) {
       return is_stream_name(path.get<std::string>())
                  ? path
-                 : SettingValue(stored_name(fs::absolute(path.get<std::string>()).string()));
+                 : SettingValue(stored_name(absolute_path(path.get<std::string>()).string()));
     };
     if (values[name].is_string()) {
       sources[name] = stored(values[name]);

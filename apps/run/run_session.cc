@@ -19,6 +19,7 @@
 #include "engine/error.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/json_text.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/video/stated_format.h"
 #include "engine/jobs/list_columns.h"
 #include "engine/matching/pair_matcher.h"
@@ -87,7 +88,7 @@ RunIdentity identity_of(const RunJob& job, const Settings& settings, const RunSe
   const PairSource::Sound sound = session.pairs->sound();
   identity.frame_times = session.pairs->frame_times();
   if (job.sequence.sound && !sound.file.empty()) {
-    identity.sound_file = fs::absolute(sound.file);
+    identity.sound_file = absolute_path(sound.file);
     identity.sound_first_frame = sound.first_frame;
     identity.sound_rate = session.pairs->frame_rate().value_or(FrameRate());
   }

@@ -20,6 +20,7 @@
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/json_text.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/options/setting_value.h"
 #include "engine/quoted_text.h"
 #include "engine/sequence/journal/leftovers.h"
@@ -78,7 +79,7 @@ void make_paths_absolute(SubmitJob& job) {
     paths.push_back(&source);
   }
   for (std::string* path : paths) {
-    if (!path->empty()) {
+    if (!path->empty() && !is_address(*path)) {
       *path = fs::absolute(*path).lexically_normal().string();
     }
   }

@@ -10,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/files/text_lines.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/frame_source.h"
@@ -32,7 +33,7 @@ fs::path file_of(const fs::path& images, const fs::path& name) {
   for (const fs::path& path : {images / name, images / name.filename()}) {
     for (const char* extension : {"", ".png", ".jpg"}) {
       const fs::path file = path.string() + extension;
-      if (fs::is_regular_file(file)) {
+      if (is_file(file)) {
         return file;
       }
     }
@@ -44,7 +45,7 @@ void require_folder(const std::string& images, const fs::path& intrinsics) {
   if (!intrinsics.empty()) {
     throw UsageError("--intrinsics is given with a model, which has its own cameras");
   }
-  if (!fs::is_directory(images)) {
+  if (!is_folder(images)) {
     throw UsageError(
         fmt::format("--images is '{}', expected the folder of the model's images", images));
   }
@@ -56,7 +57,7 @@ std::vector<SceneImage> images_of_model(const std::vector<PosedImage>& posed,
   std::vector<SceneImage> result;
   for (const PosedImage& image : posed) {
     const fs::path file = file_of(images, image.name);
-    if (!fs::exists(file)) {
+    if (!is_there(file)) {
       throw Error(
           fmt::format("{} is missing, expected an image of {}", file.string(), model.string()));
     }
@@ -168,7 +169,7 @@ std::vector<SceneImage> posed_scene_images(const fs::path& poses, const std::str
   if (images.empty()) {
     throw UsageError("--poses is given without --images, expected both");
   }
-  if (fs::is_directory(poses)) {
+  if (is_folder(poses)) {
     require_folder(images, intrinsics);
     return images_of_model(read_colmap_model(poses), images, poses / "images.txt");
   }

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/quoted_text.h"
 
 namespace vantage::apps {
@@ -77,12 +79,12 @@ bool has_too_deep_key(std::string_view text) {
 
 SettingValue read_file(const std::string& path, std::string_view expected, Tables tables) {
   std::ifstream file(path, std::ios::binary);
-  std::string content;
+  std::string content = is_address(path) ? read_file_text(path, true) : "";
   for (std::vector<char> block(std::size_t{1} << 16); file;) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
     content.append(block.data(), static_cast<std::size_t>(file.gcount()));
   }
-  if (!file.is_open() || file.bad()) {  // a folder opens like a file
+  if (!is_address(path) && (!file.is_open() || file.bad())) {  // a folder opens like a file
     throw Error(fmt::format("{}: cannot be read, expected {}", path, expected));
   }
   if (has_too_deep_key(content)) {

@@ -8,6 +8,7 @@
 #include "engine/error.h"
 #include "engine/io/files/csv_records.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/files/text_lines.h"
 #include "engine/quoted_text.h"
 
@@ -44,7 +45,7 @@ std::vector<SceneImage> parse_position_list(std::string_view text, const fs::pat
     if (fields[0].empty()) {
       records.fail(records.record_line(), "the name is empty, expected an image file");
     }
-    images.push_back({.file = file.parent_path() / fields[0],
+    images.push_back({.file = joined_path(file.parent_path(), fields[0]),
                       .position = {.x = coordinate(1), .y = coordinate(2)}});
   }
   if (images.empty()) {

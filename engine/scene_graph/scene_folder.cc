@@ -12,6 +12,7 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/file_descriptor.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/files/temporary_name.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
@@ -24,6 +25,9 @@ namespace fs = std::filesystem;
 constexpr std::size_t kHashDigits = 16;
 
 std::string path_from(const fs::path& folder, const fs::path& file) {
+  if (is_address(file)) {
+    return file.string();
+  }
   const fs::path parent = fs::weakly_canonical(fs::absolute(file).parent_path());
   return (parent / file.filename())
       .lexically_relative(fs::weakly_canonical(fs::absolute(folder)))
@@ -31,6 +35,7 @@ std::string path_from(const fs::path& folder, const fs::path& file) {
 }
 
 void make_folder(const fs::path& folder) {
+  require_local_folder(folder);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
@@ -67,7 +72,7 @@ fs::path scene_lock_file(const fs::path& folder) {
 std::string stored_image_file(const fs::path& folder, const fs::path& image,
                               const std::string& content, bool copy) {
   std::string name = path_from(folder, image);
-  const bool is_inside = fs::path(name).begin()->string() != "..";
+  const bool is_inside = !is_address(image) && fs::path(name).begin()->string() != "..";
   if (!copy || is_inside) {
     return name;
   }

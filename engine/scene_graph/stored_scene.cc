@@ -12,6 +12,7 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/maps/map_io.h"
 #include "engine/rectification/rows/row_correction.h"
@@ -165,9 +166,8 @@ void require_complete(const StoredScene& scene, std::span<const SceneEdge> edges
 SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int vertex,
                         Execution& execution) {
   const StoredImage& stored = scene.images.at(static_cast<std::size_t>(vertex));
-  const fs::path image_file = folder / stored.file;
-  std::error_code ignored;
-  if (!fs::exists(image_file, ignored)) {
+  const fs::path image_file = joined_path(folder, stored.file);
+  if (!is_there(image_file)) {
     throw Error(
         fmt::format("{} is missing, expected image {} of the scene; build the scene again "
                     "after moving images, or with `copy-images` to keep copies in the folder",

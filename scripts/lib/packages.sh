@@ -7,7 +7,7 @@ readonly BUILD_PACKAGES=(
   g++ cmake ninja-build pkg-config ccache mold
   libtbb-dev libopencv-dev libeigen3-dev libhwy-dev libhwloc-dev
   libavformat-dev libavcodec-dev libavfilter-dev libavutil-dev libswscale-dev libswresample-dev
-  libdeflate-dev libjpeg-dev libpng-dev libtiff-dev
+  libdeflate-dev libjpeg-dev libpng-dev libtiff-dev libcurl4-openssl-dev
   libcli11-dev libtomlplusplus-dev nlohmann-json3-dev libfmt-dev
   libgtest-dev libgmock-dev libbenchmark-dev
   python3 python3-dev python3-numpy python3-opencv python3-pytest pybind11-dev

@@ -61,6 +61,12 @@ TEXTS = {
                   "--stereo\nf.mp4\n--packing\nsbsl\n--sequence\n0:9\n", "--cost\ncensus\n--smoothness=3\n"],
     "keywords": [json.dumps({"disparities": "0:63", "preset": "quality", "threads": 4, "window": 7}),
                  json.dumps({"left": "a/", "right": "b/", "step": 2, "gamma": 0.5, "holes": "texture"})],
+    "store_answer": ["<ListBucketResult><EncodingType>url</EncodingType><IsTruncated>true</IsTruncated>"
+                     "<NextContinuationToken>a&amp;b</NextContinuationToken><CommonPrefixes><Prefix>b/</Prefix>"
+                     "</CommonPrefixes><Contents><Key>a+b%2B</Key><Size>12</Size><ETag>&quot;e&quot;</ETag></Contents>",
+                     "<Error><Code>NoSuchKey</Code><Message>m</Message><Region>r</Region></Error>"],
+    "aws_profiles": ["[default]\naws_access_key_id = A\n[profile b]\nregion=c\ns3 =\n  endpoint_url = x\n"],
+    "address": ["data/left/%06d.png", "https://host:443/a/../b%20c.png", "http://[::1]:80/"],
     "shots": [json.dumps({"shots": [{"first": 0, "end": 9, "range": [0, 63]}]}) + "\n"],
 }
 WORDS = {

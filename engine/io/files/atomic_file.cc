@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/file_descriptor.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/files/temporary_name.h"
 #include "engine/io/files/unfinished_files.h"
 
@@ -40,6 +41,11 @@ AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(th
   if (!path.has_filename()) {
     throw Error(fmt::format("cannot write '{}': expected a file name", path.string()));
   }
+  if (is_address(path)) {
+    std::error_code error;
+    create_temporary(fs::temp_directory_path(error));
+    return;
+  }
   std::error_code ignored;
   const fs::file_status status = fs::status(final_path_, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
@@ -52,6 +58,10 @@ AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(th
     throw Error(
         fmt::format("cannot write {}: there is no folder {}", path.string(), folder.string()));
   }
+  create_temporary(folder);
+}
+
+void AtomicFile::create_temporary(const fs::path& folder) {
   for (int attempt = 0;; ++attempt) {
     temporary_path_ = folder / temporary_name(final_path_, attempt);
     note_unfinished(temporary_path_);
@@ -87,6 +97,10 @@ void AtomicFile::flush_name() const {
 }
 
 void AtomicFile::commit() {
+  if (is_address(final_path_)) {
+    (void)remote_files(final_path_).write(final_path_.string(), temporary_path_, false);
+    return;  // the destructor removes the temporary file
+  }
   if (const int error = flush(); error != 0) {
     fail_to_write(given_path_, error);
   }
@@ -99,6 +113,9 @@ void AtomicFile::commit() {
 }
 
 bool AtomicFile::commit_if_absent() {
+  if (is_address(final_path_)) {
+    return remote_files(final_path_).write(final_path_.string(), temporary_path_, true);
+  }
   const int flush_error = flush();
   if (flush_error == 0 && ::link(temporary_path_.c_str(), final_path_.c_str()) == 0) {
     flush_name();
@@ -121,6 +138,9 @@ void fail_to_write(const fs::path& path, int error_number) {
 }
 
 fs::path through_links(const fs::path& path) {
+  if (is_address(path)) {
+    return path;
+  }
   constexpr int kMaxLinks = 40;  // the limit of Linux
   std::error_code error;
   fs::path place = path;
@@ -146,7 +166,7 @@ void write_text_file(const fs::path& path, std::string_view text) {
 
 bool create_text_file(const fs::path& path, std::string_view text) {
   std::error_code ignored;
-  if (fs::exists(path, ignored)) {
+  if (fs::exists(path, ignored)) {  // of an address, commit_if_absent() tells
     return false;
   }
   AtomicFile target(path);

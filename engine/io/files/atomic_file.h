@@ -15,9 +15,10 @@ std::filesystem::path through_links(const std::filesystem::path& path);
 
 /// A file that appears under its final name complete or not at all. The caller writes to
 /// temporary_path(), a hidden file in the same folder with the same extension; commit() flushes and
-/// renames. Without commit() nothing is left. An existing file is replaced only by commit(). Thread
-/// rule: one thread at a time; different objects may have the same final name (the last commit
-/// wins).
+/// renames. Without commit() nothing is left. An existing file is replaced only by commit(). At an
+/// address, the hidden file is in the folder of temporary files ($TMPDIR), and commit() stores it.
+/// Thread rule: one thread at a time; different objects may have the same final name (the last
+/// commit wins).
 class AtomicFile {
  public:
   /// Creates the empty temporary file. Throws Error when the folder is missing or not writable, or
@@ -45,6 +46,7 @@ class AtomicFile {
   bool commit_if_absent();
 
  private:
+  void create_temporary(const std::filesystem::path& folder);
   /// 0 or errno.
   [[nodiscard]] int flush() const;
   void flush_name() const;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/io/files/file_descriptor.h"
+#include "engine/io/files/remote_files.h"
 
 namespace vantage {
 namespace {
@@ -108,7 +109,16 @@ void FileIdentity::add(std::string_view name, const std::filesystem::path& file)
   hash_.add(static_cast<std::uint64_t>(name.size()));
   hash_.add(name);
   struct stat status {};
-  if (::stat(file.c_str(), &status) != 0) {
+  const std::optional<FileStatus> remote =
+      is_address(file) ? remote_files(file).status(file.string()) : std::nullopt;
+  if (remote) {
+    ++files_;
+    bytes_ += remote->bytes;
+    hash_.add(remote->bytes);
+    hash_.add(remote->version);
+    return;
+  }
+  if (is_address(file) || ::stat(file.c_str(), &status) != 0) {
     hash_.add(std::string_view("missing"));
     return;
   }

@@ -42,7 +42,7 @@ class Fnv1aHash {
 };
 
 /// Detects changed files without reading them: by their number, their bytes, and a hash over name,
-/// size and modification time of each, in order.
+/// size and modification time (at an address: ETag) of each, in order.
 class FileIdentity {
  public:
   /// Adds a file under `name` (machines may see it at different paths). A missing file is hashed as

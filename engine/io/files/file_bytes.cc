@@ -12,6 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/file_descriptor.h"
+#include "engine/io/files/remote_files.h"
 
 namespace vantage {
 namespace {
@@ -37,6 +38,16 @@ void set_max_image_pixels(long long pixels) {
 }
 
 std::vector<std::uint8_t> read_file_bytes(const fs::path& path, bool may_be_empty) {
+  // Size of the largest image: float RGBA. Larger files are not images.
+  constexpr std::uintmax_t kMaxBytes =
+      static_cast<std::uintmax_t>(kMaxImagePixels) * 16 + (1U << 20);
+  if (is_address(path)) {
+    std::vector<std::uint8_t> bytes = remote_files(path).read(path.string(), kMaxBytes);
+    if (bytes.empty() && !may_be_empty) {
+      fail_to_read(path, "the file is empty");
+    }
+    return bytes;
+  }
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) {
@@ -54,8 +65,7 @@ std::vector<std::uint8_t> read_file_bytes(const fs::path& path, bool may_be_empt
   if (size == 0 && !may_be_empty) {
     fail_to_read(path, "the file is empty");
   }
-  // Size of the largest image: float RGBA. Larger files are not images.
-  if (size > static_cast<std::uintmax_t>(kMaxImagePixels) * 16 + (1U << 20)) {
+  if (size > kMaxBytes) {
     fail_to_read(path, fmt::format("has {} bytes, too many for an image", size));
   }
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));

@@ -24,8 +24,8 @@ inline constexpr long long kMaxImagePixels = 1LL << 28;
 long long max_image_pixels();
 void set_max_image_pixels(long long pixels);
 
-/// Content of a regular file. Throws Error when it is missing, unreadable, not a file, or empty but
-/// must not be.
+/// Content of a regular file, local or at an address. Throws Error when it is missing, unreadable,
+/// not a file, or empty but must not be.
 std::vector<std::uint8_t> read_file_bytes(const std::filesystem::path& path,
                                           bool may_be_empty = false);
 /// Content of a regular file as text. Throws as read_file_bytes() does.

@@ -4,13 +4,14 @@
 #include <string>
 #include <system_error>
 
+#include "engine/io/files/remote_files.h"
+
 namespace vantage {
 
 NumberedPart numbered_part(const std::filesystem::path& spec) {
   const std::string text = spec.string();
   const std::size_t hash = text.rfind('#');
-  std::error_code ignored;
-  if (hash == std::string::npos || hash == 0 || std::filesystem::exists(spec, ignored)) {
+  if (hash == std::string::npos || hash == 0 || is_there(spec)) {
     return {spec};
   }
   int number = -1;

@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/numbered_part.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/images/photograph_io.h"
 #include "engine/io/video/image_sequence.h"
 #include "engine/io/video/video_frames.h"
@@ -49,11 +50,10 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
     images->set_reading(reading);
     return images;
   };
-  std::error_code ignored;
-  if (fs::is_directory(spec, ignored)) {
+  if (is_folder(spec)) {
     return with_reading(open_image_folder(spec));
   }
-  if (fs::exists(spec, ignored)) {
+  if (is_there(spec)) {
     if (has_image_extension(spec)) {
       const fs::path path = spec;
       return with_reading(std::make_unique<ListedImages>(spec, path.parent_path(),
@@ -61,8 +61,7 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
     }
     return std::make_unique<VideoFrames>(spec, kMainVideo, reading);
   }
-  if (const NumberedPart part = numbered_part(spec);
-      part.number && fs::is_regular_file(part.file, ignored)) {
+  if (const NumberedPart part = numbered_part(spec); part.number && is_file(part.file)) {
     if (has_image_extension(part.file)) {
       PhotographReading of_page = reading;
       of_page.page = part.number;
@@ -71,7 +70,7 @@ std::unique_ptr<FrameSource> open_frame_source(const std::string& spec,
     return std::make_unique<VideoFrames>(part.file.string(), *part.number, reading);
   }
   if (const std::size_t mark = spec.rfind('#');
-      mark != std::string::npos && fs::is_regular_file(spec.substr(0, mark), ignored)) {
+      mark != std::string::npos && is_file(spec.substr(0, mark))) {
     throw UsageError(fmt::format("{}: expected the number of a video track after #, from 0", spec));
   }
   if (spec.find('%') != std::string::npos) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <iterator>
 #include <limits>
 #include <string_view>
 
@@ -13,6 +14,7 @@
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/numbered_names.h"
+#include "engine/io/files/remote_files.h"
 
 namespace vantage {
 namespace {
@@ -25,6 +27,12 @@ constexpr std::int64_t kMaxMissingPerFile = 100;
 template <typename Wanted>
 std::vector<fs::path> list_names(const fs::path& folder, const Wanted& wanted) {
   std::vector<fs::path> names;
+  if (is_address(folder)) {
+    std::ranges::copy_if(remote_files(folder).names(folder.string()), std::back_inserter(names),
+                         wanted);
+    std::sort(names.begin(), names.end(), comes_before_naturally);
+    return names;
+  }
   std::error_code error;
   for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error), end;
        !error && entry != end; entry.increment(error)) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/io/files/numbered_names.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/video/frame_source.h"
 
 namespace vantage {
@@ -53,7 +54,7 @@ class ListedImages : public ImageSequence {
 
  private:
   [[nodiscard]] std::filesystem::path path(int index) const override {
-    return folder_ / paths_.at(static_cast<std::size_t>(index));
+    return joined_path(folder_, paths_.at(static_cast<std::size_t>(index)));
   }
   [[nodiscard]] std::string identity_name(int index) const override {
     return paths_.at(static_cast<std::size_t>(index)).string();

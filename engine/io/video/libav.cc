@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
+#include <memory>
 #include <new>
 #include <vector>
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/video/libav_functions.h"
+#include "engine/io/video/remote_input.h"
 #include "engine/io/video/video_structure.h"
 
 extern "C" {
@@ -52,16 +54,13 @@ namespace fs = std::filesystem;
 constexpr const char* kWithoutThem = "cannot read or write videos";
 
 void check_is_video_file(const fs::path& path) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(path, ignored);
-  if (!fs::exists(status)) {
+  if (!is_there(path)) {
     throw Error(fmt::format("cannot read {}: no such file", path.string()));
   }
-  if (!fs::is_regular_file(status)) {
+  if (!is_file(path)) {
     throw Error(fmt::format("cannot read {}: expected a video file", path.string()));
   }
-  std::error_code error;
-  if (fs::file_size(path, error) == 0 || error) {
+  if (bytes_of_file(path) == 0) {
     throw Error(fmt::format("cannot read {}: the file is empty", path.string()));
   }
 }
@@ -116,6 +115,7 @@ void LibavFree::operator()(AVCodecContext* codec) const noexcept {
   libav().avcodec_free_context(&codec);
 }
 void LibavFree::operator()(AVFormatContext* input) const noexcept {
+  const std::unique_ptr<RemoteInput> remote(static_cast<RemoteInput*>(input->opaque));
   libav().avformat_close_input(&input);
 }
 void LibavFree::operator()(AVFrame* frame) const noexcept { libav().av_frame_free(&frame); }
@@ -197,20 +197,30 @@ LibavInput open_media_file(const fs::path& path) {
     throw Error(
         fmt::format("{}: is an MP4 without index (moov): truncated after {} bytes, or its "
                     "recording was not finished",
-                    path.string(), fs::file_size(path)));
+                    path.string(), bytes_of_file(path)));
   }
   AVFormatContext* opened = libav().avformat_alloc_context();
   if (opened == nullptr) {
     throw std::bad_alloc();
   }
   limit_to_footage(*opened);
-  opened->protocol_whitelist = libav().av_strdup("file");
+  opened->protocol_whitelist = libav().av_strdup(is_address(path) ? "none" : "file");
+  std::unique_ptr<RemoteInput> remote;
+  if (is_address(path)) {
+    remote = std::make_unique<RemoteInput>(path);
+    remote->attach_to(*opened);
+  }
   // "file:" keeps names with a colon from being parsed as URLs. On failure `opened` is freed.
   const std::string address = "file:" + path.string();
   int result = libav().avformat_open_input(&opened, address.c_str(), nullptr, nullptr);
+  if (result < 0 && remote != nullptr) {
+    remote->rethrow();
+  }
   LibavInput input(result < 0 ? nullptr : opened);
   if (result >= 0) {
+    (void)remote.release();  // LibavFree has it
     result = libav().avformat_find_stream_info(input.get(), ProbeOptions(input->nb_streams).data());
+    (void)read_error(*input);
   }
   if (result < 0) {
     throw Error(fmt::format("{}: is not a video, or a truncated one ({})", path.string(),
@@ -263,6 +273,9 @@ void read_only(AVFormatContext& input, const AVStream& stream) {
 }
 
 int read_error(const AVFormatContext& input) {
+  if (input.opaque != nullptr) {
+    static_cast<const RemoteInput*>(input.opaque)->rethrow();
+  }
   return input.pb == nullptr ? 0 : std::min(input.pb->error, 0);
 }
 

@@ -62,9 +62,10 @@ void limit_to_footage(AVFormatContext& input);
 /// Whether a decoder is one of these.
 bool is_for_footage(const AVCodec& decoder);
 
-/// Opens a video file and determines its streams. Only files are opened, and only containers that
-/// hold one video: no playlists, which name other files, no text, no images. A truncated file opens
-/// if its container allows it. Throws Error when the file is missing, empty or not a video.
+/// Opens a video file, local or at an address, and determines its streams. Only this file is
+/// opened, and only containers that hold one video: no playlists, which name other files, no text,
+/// no images. A truncated file opens if its container allows it. Throws Error when the file is
+/// missing, empty or not a video.
 LibavInput open_media_file(const std::filesystem::path& path);
 
 /// Its videos in the order of the file, without cover art.
@@ -80,7 +81,7 @@ AVStream* find_sound_stream(AVFormatContext& input);
 /// Discards the packets of all other streams, except those already read by opening the file.
 void read_only(AVFormatContext& input, const AVStream& stream);
 /// FFmpeg's error when the system could not read the file, else 0. Demultiplexers may take it for
-/// the end.
+/// the end. Throws what reading from an address has thrown; so does fetch_packet().
 int read_error(const AVFormatContext& input);
 /// The next packet: 0, AVERROR_EOF after the last one, or another error of FFmpeg.
 int fetch_packet(AVFormatContext& input, AVPacket& packet);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <fstream>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/io/files/random_access_file.h"
+#include "engine/io/files/remote_files.h"
 
 namespace vantage {
 namespace {
@@ -23,7 +25,7 @@ constexpr std::uint64_t kTransportPacketBytes = 188;
 class SparseFile {
  public:
   explicit SparseFile(const std::filesystem::path& path)
-      : path_(path), stream_(path, std::ios::binary), size_(std::filesystem::file_size(path)) {}
+      : path_(path), file_(open_random_access(path)), size_(file_->size()) {}
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
   [[noreturn]] void fail(const std::string& problem) const {
@@ -49,7 +51,7 @@ class SparseFile {
     if (offset < begin_ || offset + bytes > begin_ + buffer_.size()) {
       load(offset);
     }
-    return {buffer_.data() + (offset - begin_), bytes};
+    return {reinterpret_cast<const char*>(buffer_.data()) + (offset - begin_), bytes};
   }
 
  private:
@@ -57,16 +59,15 @@ class SparseFile {
     constexpr std::uint64_t kMaxBytes = 4096;
     begin_ = offset;
     buffer_.resize(static_cast<std::size_t>(std::min(kMaxBytes, size_ - offset)));
-    stream_.seekg(static_cast<std::streamoff>(offset));
-    if (!stream_.read(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) {
+    if (file_->read(offset, buffer_) < buffer_.size()) {
       throw Error(fmt::format("cannot read {}", path_.string()));
     }
   }
 
   std::filesystem::path path_;
-  std::ifstream stream_;
+  std::unique_ptr<RandomAccessFile> file_;
   std::uint64_t size_;
-  std::vector<char> buffer_;  ///< bytes from begin_ on
+  std::vector<std::uint8_t> buffer_;  ///< bytes from begin_ on
   std::uint64_t begin_ = 0;
 };
 
@@ -336,7 +337,7 @@ std::string_view further_views_in_boxes(const std::filesystem::path& path) {
 void check_video_is_whole(const std::filesystem::path& path) {
   if (find_video_extent(path) != VideoExtent::kWhole) {
     throw Error(fmt::format("{}: is truncated, the video file ends after {} bytes before its end",
-                            path.string(), std::filesystem::file_size(path)));
+                            path.string(), bytes_of_file(path)));
   }
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/video/cut_video.h"
 #include "engine/io/video/libav.h"
 #include "engine/io/video/libav_functions.h"
@@ -145,7 +146,7 @@ PacketTimes read_packets(const std::filesystem::path& path, int stream_index, bo
   if (const int error = read_error(*input); error < 0) {
     throw Error(fmt::format("cannot read {}: {}", path.string(), libav_message(error)));
   }
-  if (!is_whole || is_cut_raw_video(*input, frames_end, std::filesystem::file_size(path))) {
+  if (!is_whole || is_cut_raw_video(*input, frames_end, bytes_of_file(path))) {
     result.cut_time = last_decoded == AV_NOPTS_VALUE ? last_decoded : last_decoded + 1;
     ++result.packets;
   }
@@ -234,7 +235,7 @@ VideoTiming examine_video_timing(AVFormatContext& input, AVStream& stream,
                                  const std::filesystem::path& path) {
   const bool is_whole = find_video_extent(path) == VideoExtent::kWhole;
   const bool from_index = has_whole_index(input, stream);
-  PacketTimes packets = from_index ? read_index(stream, std::filesystem::file_size(path))
+  PacketTimes packets = from_index ? read_index(stream, bytes_of_file(path))
                                    : read_packets(path, stream.index, is_whole);
   if (packets.packets == 0 || packets.packets > std::numeric_limits<int>::max()) {
     throw Error(fmt::format("{}: is a video without frames", path.string()));

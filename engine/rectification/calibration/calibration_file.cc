@@ -9,6 +9,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/rectification/calibration/projection_files.h"
 #include "engine/rectification/calibration/stereo_reading.h"
 #include "engine/rectification/stereo_calibration.h"
@@ -90,8 +91,7 @@ std::optional<std::pair<fs::path, bool>> file_of_other_camera(const fs::path& fi
         continue;
       }
       const fs::path path = std::string(name).replace(at, side.size(), other);
-      std::error_code ignored;
-      if (fs::is_regular_file(path, ignored)) {
+      if (is_file(path)) {
         return std::pair(path, !is_first);
       }
     }
@@ -101,8 +101,7 @@ std::optional<std::pair<fs::path, bool>> file_of_other_camera(const fs::path& fi
 
 /// The folder of a COLMAP model that is named, or whose cameras.txt is; else empty.
 fs::path folder_of_model(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored)    ? path
+  return is_folder(path)                    ? path
          : path.filename() == "cameras.txt" ? path.parent_path() / ""
                                             : fs::path();
 }
@@ -141,17 +140,16 @@ StereoCalibration read_calibration(const fs::path& path, CameraChoice cameras,
 std::vector<fs::path> calibration_files(const fs::path& name) {
   const std::string text = name.string();
   const std::size_t comma = text.find(',');
-  std::error_code ignored;
   if (const fs::path model = folder_of_model(name); !model.empty()) {
     return {model / "cameras.txt", model / "images.txt"};
   }
-  if (!fs::exists(name, ignored)) {
+  if (!is_there(name)) {
     if (comma == std::string::npos) {
       return {name};
     }
     const fs::path first = text.substr(0, comma);
     const fs::path second = text.substr(comma + 1);
-    return {first, fs::exists(second, ignored) ? second : first.parent_path() / second};
+    return {first, is_there(second) ? second : joined_path(first.parent_path(), second)};
   }
   const auto other = file_of_other_camera(name);
   if (!other || !are_of_one_camera(CalibrationNames(entries_of_file(name))) ||

@@ -12,6 +12,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/files/text_lines.h"
 #include "engine/quoted_text.h"
 
@@ -178,8 +179,7 @@ std::vector<PosedImage> parse_colmap_images(std::string_view text, const std::st
 std::vector<PosedImage> read_colmap_model(const fs::path& folder) {
   const fs::path cameras = folder / "cameras.txt";
   const fs::path images = folder / "images.txt";
-  std::error_code ignored;
-  if (!fs::exists(cameras, ignored) && fs::exists(folder / "cameras.bin", ignored)) {
+  if (!is_there(cameras) && is_there(folder / "cameras.bin")) {
     throw Error(
         fmt::format("{}: holds a binary COLMAP model, expected cameras.txt and images.txt; "
                     "'colmap model_converter --output_type TXT' writes them",

@@ -10,6 +10,7 @@
 
 #include "engine/error.h"
 #include "engine/io/files/file_descriptor.h"
+#include "engine/io/files/remote_files.h"
 
 namespace vantage {
 namespace {
@@ -115,6 +116,7 @@ void SequenceLayout::make_folders() const {
 }
 
 void make_folder(const fs::path& folder) {
+  require_local_folder(folder);
   std::error_code error;
   std::vector<fs::path> changed;  // folders that get a new entry
   for (fs::path made = fs::absolute(folder, error); !error && !fs::exists(made, error);

@@ -17,6 +17,7 @@
 #include "engine/io/files/csv_records.h"
 #include "engine/io/files/encoded_text.h"
 #include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/video/image_sequence.h"
 #include "engine/quoted_text.h"
 
@@ -192,9 +193,9 @@ std::vector<ListedPair> parse_pair_list(std::string_view text, const fs::path& f
     pair.details.name = field(kName);
     require_file_name(pair.details.name, records);
     if (const std::string calibration = field(kCalibration); !calibration.empty()) {
-      pair.details.calibration = file.parent_path() / calibration;
-      pair.details.kitti_cameras = kitti_cameras_of(
-          std::array{file.parent_path() / pair.left, file.parent_path() / pair.right});
+      pair.details.calibration = joined_path(file.parent_path(), calibration);
+      pair.details.kitti_cameras = kitti_cameras_of(std::array{
+          joined_path(file.parent_path(), pair.left), joined_path(file.parent_path(), pair.right)});
     }
     pair.details.disparities = range_of(field(kMinDisparity), field(kMaxDisparity), records);
     pairs.push_back(std::move(pair));
@@ -209,17 +210,16 @@ std::vector<ListedPair> parse_pair_list(std::string_view text, const fs::path& f
 
 std::vector<ListedPair> read_pair_list(const fs::path& file, std::vector<std::string>* remarks) {
   std::vector<ListedPair> pairs = parse_pair_list(read_file_text(file), file);
-  const auto is_there = [&](const fs::path& image) {
-    std::error_code ignored;
-    return fs::exists(file.parent_path() / image, ignored);
+  const auto is_present = [&](const fs::path& image) {
+    return is_there(joined_path(file.parent_path(), image));
   };
   const auto may_be_image = [&](const fs::path& name) {
-    return has_image_extension(name) || is_there(name);
+    return has_image_extension(name) || is_present(name);
   };
   const ListedPair first = pairs.front();
   if (!may_be_image(first.left) && !may_be_image(first.right) && first.details == PairDetails() &&
       std::any_of(pairs.begin() + 1, pairs.end(), [&](const ListedPair& pair) {
-        return is_there(pair.left) && is_there(pair.right);
+        return is_present(pair.left) && is_present(pair.right);
       })) {
     pairs.erase(pairs.begin());
     if (remarks != nullptr) {

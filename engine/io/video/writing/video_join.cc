@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/video/libav.h"
 #include "engine/io/video/libav_functions.h"
 #include "engine/io/video/video_structure.h"
@@ -196,8 +197,7 @@ void write_joined(std::span<const fs::path> segments, const JoinPlan& plan, AVRa
 }
 
 void require_sound_file(const SoundTrack& sound) {
-  std::error_code ignored;
-  if (!sound.video.empty() && !fs::exists(sound.video, ignored)) {
+  if (!sound.video.empty() && !is_there(sound.video)) {
     throw Error(
         fmt::format("cannot read {}: no such file, expected the video whose sound is copied; use "
                     "`no-sound` to write none",

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/io/store/object_store.h"
+
+namespace vantage {
+
+// What S3 answers, in XML. Only the elements that are needed are read; what is damaged or missing
+// is empty. Thread rule: pure.
+
+/// Content of the first element `name`, unescaped.
+std::string element_of(std::string_view xml, std::string_view name);
+
+/// Why a store has refused a request.
+struct StoreRefusal {
+  std::string code;     ///< "NoSuchKey"
+  std::string message;  ///< of the store
+  std::string region;   ///< where the bucket is; empty: not told
+  std::string server_time;
+};
+StoreRefusal parse_refusal(std::string_view xml);
+
+/// One page of ListObjectsV2 with encoding-type=url.
+struct ListedPage {
+  std::vector<ListedObject> objects;  ///< in the order of their keys
+  std::string next;                   ///< the token of the next page; empty: the last one
+};
+ListedPage parse_listed_page(std::string_view xml);
+
+}  // namespace vantage
