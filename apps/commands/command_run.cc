@@ -99,6 +99,7 @@ std::string finish_if_whole(const RunJob& job, const RunSession& session,
 int command_run(const Arguments& arguments) {
   RunJob job;
   Settings settings("run", "Computes disparity maps and new views of a sequence of stereo pairs.");
+  settings.take_job_file();
   add_run_settings(settings, job);
   if (!read_command_line(settings, arguments)) {
     return kExitDone;

@@ -7,6 +7,7 @@ namespace vantage::apps {
 namespace {
 
 void add_submit_settings(Settings& settings, SubmitJob& job) {
+  settings.take_job_file();
   add_run_settings(settings, job.run);
   add_slurm_settings(settings, job.slurm);
   settings.choice("engine", job.engine, {{"slurm", BatchEngine::kSlurm}}, "Batch system");

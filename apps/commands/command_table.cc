@@ -20,6 +20,8 @@ constexpr std::array kCommands = {
             command_reproject, kPairs},
     Command{"rectify", "Rectifies photographs of two cameras", command_rectify, kPairs},
     Command{"run", "Disparity maps and new views of a sequence or video", command_run, kSequences},
+    Command{"batch", "Many films and pairs of a list, by any number of workers", command_batch,
+            kSequences},
     Command{"merge", "Checks that all parts of a run are complete, and joins its videos",
             command_merge, kSequences},
     Command{"verify", "Finds damaged files in the results of a run", command_verify, kSequences},

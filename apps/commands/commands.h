@@ -33,6 +33,7 @@ int command_match(const Arguments& arguments);
 int command_synth(const Arguments& arguments);
 int command_view(const Arguments& arguments);
 int command_run(const Arguments& arguments);
+int command_batch(const Arguments& arguments);
 int command_reproject(const Arguments& arguments);
 int command_rectify(const Arguments& arguments);
 int command_eval(const Arguments& arguments);

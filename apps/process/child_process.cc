@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,12 +16,15 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
 #include "engine/error.h"
 #include "engine/options/setting_value.h"
 
 namespace vantage::apps {
 namespace {
+
+constexpr const char* kParent = "VANTAGE_PARENT_PROCESS";
 
 /// Both ends of a pipe; programs started meanwhile do not inherit them.
 class Pipe {
@@ -95,21 +99,43 @@ bool read_some(int descriptor, std::string& text) {
   return count > 0 || (count < 0 && errno == EINTR);
 }
 
+/// Asks a program to end once it has to, and later makes it.
+class Ending {
+ public:
+  Ending(pid_t process, const std::atomic<bool>* stop, std::chrono::duration<double> patience)
+      : process_(process), stop_(stop), patience_(patience) {}
+
+  /// Whether nothing more is to be done.
+  [[nodiscard]] bool is_over() const { return stop_ == nullptr || killed_; }
+  void look() {
+    const Clock::time_point now = Clock::now();
+    if (stop_ != nullptr && !asked_ && stop_->load()) {
+      ::kill(process_, SIGTERM);
+      asked_ = now;
+    }
+    if (asked_ && !killed_ && now - *asked_ > patience_) {
+      ::kill(process_, SIGKILL);
+      killed_ = true;
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  pid_t process_;
+  const std::atomic<bool>* stop_;
+  std::chrono::duration<double> patience_;
+  std::optional<Clock::time_point> asked_;
+  bool killed_ = false;
+};
+
 /// Reads both pipes to their ends, as data arrives: a program that fills one waits for its reader.
-/// Once `stop` is set, `process` is asked to end.
-void read_all(const Pipe& out, const Pipe& err, pid_t process, const std::atomic<bool>* stop,
-              ProgramResult& result) {
+void read_all(const Pipe& out, const Pipe& err, Ending ending, ProgramResult& result) {
   constexpr int kStopInterval_ms = 100;
   std::array<pollfd, 2> ends = {{{out.read_end(), POLLIN, 0}, {err.read_end(), POLLIN, 0}}};
   const std::array<std::string*, 2> texts = {&result.out, &result.err};
-  bool told = false;
   while (ends[0].fd >= 0 || ends[1].fd >= 0) {
-    const bool waits_for_stop = stop != nullptr && !told;
-    const int ready = ::poll(ends.data(), ends.size(), waits_for_stop ? kStopInterval_ms : -1);
-    if (waits_for_stop && stop->load()) {
-      ::kill(process, SIGTERM);
-      told = true;
-    }
+    const int ready = ::poll(ends.data(), ends.size(), ending.is_over() ? -1 : kStopInterval_ms);
+    ending.look();
     if (ready < 0) {
       continue;  // interrupted by a signal
     }
@@ -140,16 +166,30 @@ bool program_exists(const std::string& name) {
   });
 }
 
-ProgramResult run_program(const std::vector<std::string>& command, const std::atomic<bool>* stop) {
+ProgramResult run_program(const std::vector<std::string>& command, const std::atomic<bool>* stop,
+                          std::chrono::duration<double> patience) {
   Pipe out;
   Pipe err;
   const pid_t process = spawn(command, out, err);
   out.close_write_end();
   err.close_write_end();
   ProgramResult result;
-  read_all(out, err, process, stop, result);
+  read_all(out, err, {process, stop, patience}, result);
   result.exit_code = wait_for(process);
   return result;
+}
+
+void end_children_with_this() { ::setenv(kParent, fmt::format("{}", ::getpid()).c_str(), 1); }
+
+void end_with_parent() {
+  const char* const parent = std::getenv(kParent);
+  if (parent == nullptr || fmt::format("{}", ::getppid()) != parent) {
+    return;
+  }
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (fmt::format("{}", ::getppid()) != parent) {
+    std::raise(SIGTERM);  // it ended before that
+  }
 }
 
 std::string path_of_this_program() {

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "apps/commands/commands.h"
+#include "apps/process/child_process.h"
 #include "apps/process/interrupt.h"
 #include "apps/process/tell.h"
 #include "engine/io/files/unfinished_files.h"
@@ -88,6 +89,7 @@ void set_up_process() {
   (void)std::signal(SIGPIPE, SIG_IGN);
   (void)std::signal(SIGXFSZ, SIG_IGN);
   remove_files_on_signals();
+  end_with_parent();
   reserve = std::malloc(kReserveBytes);  // NOLINT(cppcoreguidelines-no-malloc)
   std::set_new_handler(give_reserve_back);
 }

@@ -54,6 +54,7 @@ ProfiledCommand::ProfiledCommand(const Arguments& words, bool is_match)
   if (is_match) {
     add_match_job_settings(settings_, std::get<MatchJob>(job_));
   } else {
+    settings_.take_job_file();
     add_run_settings(settings_, std::get<RunJob>(job_));
   }
 }

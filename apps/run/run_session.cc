@@ -156,6 +156,27 @@ std::string counted_frames(const RunJob& job, int frame_count) {
                                                          job.sequence.baselines.size() + 1);
 }
 
+/// The range of disparities of all pairs; where each pair has its own, that of the first, by which
+/// memory is planned.
+std::optional<DisparityRange> find_range(const RunJob& job, const RunSession& session,
+                                         const FramePair& first, Execution& execution,
+                                         const std::string& command) {
+  if (job.sequence.search_scope == SearchScope::kPair) {
+    constexpr int kUsualPart = 8;  // of the width, where this pair has no texture
+    return find_disparity_range(first.left, first.right, execution)
+        .value_or(DisparityRange{0, first.left.width() / kUsualPart});
+  }
+  Progress progress(command + ": range", "pairs", job.shown_progress());
+  const auto found = find_sequence_range(
+      *session.pairs, [&](FramePair& pair) { session.rectify(pair, execution); }, execution,
+      job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero,
+      [&](int done, int total) { progress.update(done, total, 0); });
+  if (session.pairs->is_stream()) {
+    require_no_interrupt();
+  }
+  return found;
+}
+
 /// Warns of the first pair, finds out how rows are corrected, and tells.
 void choose_rows(RunJob& job, FramePair& first, Execution& execution, RunSession& session,
                  RunReport& report) {
@@ -277,26 +298,17 @@ RunSession open_run(RunJob& job, const Settings& settings, RunReport& report) {
     tell_remarks(session.shape.cameras->remarks, job.common, report);
   }
   choose_rows(job, first, execution, session, report);
-  const auto rectify = [&](FramePair& pair) { session.rectify(pair, execution); };
-  const auto find_range = [&] {
-    // Estimating the range of a video without an index decodes the whole video.
-    if (const std::optional<DisparityRange> known = range_of_run_to_resume(job)) {
-      return known;
-    }
-    Progress progress(settings.command() + ": range", "pairs", job.shown_progress());
-    const auto found =
-        find_sequence_range(*session.pairs, rectify, execution,
-                            job.sequence.is_film() ? Infinity::kAnywhere : Infinity::kAtZero,
-                            [&](int done, int total) { progress.update(done, total, 0); });
-    if (session.pairs->is_stream()) {
-      require_no_interrupt();
-    }
-    return found;
-  };
   MatchOptions& match = job.sequence.match;
   use_ranges(session.columns, match);
   report.set_settings(reported_settings(settings, match));
-  choose_disparities(settings, job.common, find_range, match, report);
+  choose_disparities(
+      settings, job.common,
+      [&] {
+        // Estimating the range of a video without an index decodes the whole video.
+        const std::optional<DisparityRange> known = range_of_run_to_resume(job);
+        return known ? known : find_range(job, session, first, execution, settings.command());
+      },
+      match, report);
   job.sequence.validate();
   job.sequence.frame_rate =
       job.frame_rate.value_or(session.pairs->frame_rate().value_or(FrameRate()));
@@ -359,8 +371,10 @@ std::string describe_plan(const RunJob& job, const RunSession& session) {
   const std::string range = to_text(job.sequence.match.disparities);
   line(fmt::format("{}, disparities {}, {}", job.sequence.match.chosen(),
                    session.columns.all_have_ranges ? "of the list"
-                   : session.columns.widest        ? range + " or of the list"
-                                                   : range,
+                   : job.sequence.search_scope == SearchScope::kPair
+                       ? session.columns.widest ? "of each pair or of the list" : "of each pair"
+                   : session.columns.widest ? range + " or of the list"
+                                            : range,
                    strips_text(session.memory.chain)));
   line(fmt::format(
       "{}, {} frame{} in flight; memory about {}{}{}", session.executor, session.memory.in_flight,

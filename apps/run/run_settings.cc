@@ -126,7 +126,6 @@ void add_pipeline_settings(Settings& settings, RunJob& job) {
 }  // namespace
 
 void add_run_settings(Settings& settings, RunJob& job) {
-  settings.take_job_file();
   add_input_settings(settings, job);
   add_unrectified_settings(settings, job.unrectified, job.rectified_pixels);
   add_calibration_choice_settings(settings, job.calibration_choice);

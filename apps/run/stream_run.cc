@@ -35,7 +35,7 @@ void check_stream(const RunJob& job) {
         "--output is -, expected --save with one output of pictures: preview, views, stereo, "
         "depth-video, unmatched, right-unmatched, holes, sources or cyclopean-occlusion");
   }
-  if (options.needs_matched_shots() || options.search_range_per_shot ||
+  if (options.needs_matched_shots() || options.search_scope == SearchScope::kShot ||
       options.depth_scale.scope == DepthVideoScale::Scope::kShot) {
     throw UsageError(
         "an option is per shot and --output is -, expected no shots: they need the whole input "

@@ -16,8 +16,9 @@ constexpr Rule kSequenceRules[] = {
     {kSequence, "reuse = frame", "baselines", "expected none with baselines"},
     {kSequence, "reuse = frame", "save posterior-mean | save posterior-variance",
      "expected none with moments of p(d)"},
-    {kSequence, "search-range = shot", "temporal-prior > 0 | reuse != none",
-     "search-range is shot, expected film with temporal-prior or reuse, which pass disparities on"},
+    {kSequence, "search-range = shot | search-range = pair", "temporal-prior > 0 | reuse != none",
+     "search-range is per shot or pair, expected film with temporal-prior or reuse, which pass "
+     "disparities on"},
     {kSequence, "selection = symmetric", "baselines",
      "expected winner or scanline with baselines: a symmetric solution is of two images"},
     // Outputs.
@@ -166,6 +167,10 @@ constexpr Rule kRunRules[] = {
     // The run.
     {kRun, "search-range = shot", "user disparities",
      "search-range is shot, expected film with a range in --disparities"},
+    {kRun, "search-range = pair", "user disparities",
+     "search-range is pair, expected film with a range in --disparities"},
+    {kRun, "search-range = pair", "unless pairs",
+     "search-range is pair, expected it with --pairs only: pairs of a sequence have one range"},
     {kRun, "user search-range = shot", "memory",
      "search-range is shot, expected film with --memory, which plans for one range"},
     {kRun, "search-range = shot", "memory",

@@ -203,11 +203,12 @@ void add_steadiness_settings(Settings& settings, SequenceJob& job) {
   settings.choice<FitScope>("intensity-fit", options.intensity_fit,
                             {{"frame", FitScope::kFrame}, {"shot", FitScope::kShot}},
                             "Match the brightness of both images once per frame or once per shot");
-  settings.choice<bool>("search-range", job.search_range_per_shot,
-                        {{"film", false}, {"shot", true}},
-                        "Search all frames in one range of disparities, or each shot in the range "
-                        "found there; auto: shot for depth-video and comfort with --disparities "
-                        "auto");
+  settings.choice<SearchScope>(
+      "search-range", job.search_scope,
+      {{"film", SearchScope::kFilm}, {"shot", SearchScope::kShot}, {"pair", SearchScope::kPair}},
+      "Search all frames in one range of disparities, or each shot, or "
+      "each pair of a list, in the range found there; auto: shot for "
+      "depth-video and comfort with --disparities auto, else film");
   settings.choice<bool>("preview-range", options.preview_range_per_shot,
                         {{"search", false}, {"shot", true}},
                         "Colour scale of previews: the search range or the disparities of a shot");
@@ -258,12 +259,13 @@ void complete_sequence(SequenceJob& job, bool is_streamed) {
       sequence.save.push_back(SequenceOutput::kViews);
     }
   }
-  if (!job.search_range_per_shot && sequence.is_film()) {
+  if (!job.search_scope && sequence.is_film()) {
     // Stays as it is when the range has been found, or the run is continued.
-    job.search_range_per_shot =
+    const bool is_per_shot =
         sequence.match.disparities_auto && !sequence.temporal.uses_past() && !is_streamed;
+    job.search_scope = is_per_shot ? SearchScope::kShot : SearchScope::kFilm;
   }
-  sequence.search_range_per_shot = job.search_range_per_shot.value_or(false);
+  sequence.search_scope = job.search_scope.value_or(SearchScope::kFilm);
   sequence.validate();
 }
 

@@ -36,9 +36,9 @@ struct SequenceJob {
   /// Empty: the disparity map, and the views if there are any.
   std::optional<std::vector<SequenceOutput>> save;
   SequenceViews views;
-  /// Sets sequence.search_range_per_shot. Empty: true for depth videos and comfort if no range is
-  /// given and frames are independent.
-  std::optional<bool> search_range_per_shot;
+  /// Sets sequence.search_scope. Empty: kShot for depth videos and comfort if no range is given and
+  /// frames are independent, else kFilm.
+  std::optional<SearchScope> search_scope;
   std::optional<FrameRange> frames;   ///< of the input
   std::optional<int> step_of_frames;  ///< N of --frames A-B:N
   std::optional<int> in_flight;       ///< 1..64; empty: from threads and memory

@@ -2,6 +2,7 @@
 
 #include <sys/wait.h>
 
+#include "tests/apps/sampling.h"
 #include "tests/apps/stream_fixture.h"
 
 namespace vantage::run_live_test {

@@ -266,7 +266,9 @@ OptionValues values_of(const SequenceOptions& options) {
   }
   values.set("temporal-prior", options.temporal.weight);
   values.set("reuse", options.temporal.reuse == Reuse::kNone ? "none" : "frame");
-  values.set("search-range", options.search_range_per_shot ? "shot" : "film");
+  values.set("search-range", options.search_scope == SearchScope::kShot   ? "shot"
+                             : options.search_scope == SearchScope::kPair ? "pair"
+                                                                          : "film");
   if (!options.views.empty()) {
     values.set("view", "given");
   }

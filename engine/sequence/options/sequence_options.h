@@ -97,6 +97,13 @@ enum class FitScope {
   kShot    ///< once for all frames between two cuts
 };
 
+/// What is searched in one range of disparities, unless that is given.
+enum class SearchScope {
+  kFilm,  ///< all frames: match.disparities
+  kShot,  ///< the range found in some pairs of a shot, match.disparities where none is found
+  kPair   ///< that of the pair alone: of pairs that have nothing to do with each other
+};
+
 /// Whether rectification is part of the search (UnrectifiedMatcher), and whose pixels maps have.
 enum class UnrectifiedSearch {
   kNone,           ///< pairs are rectified, if needed before the search
@@ -129,12 +136,10 @@ struct SequenceOptions {
   /// The positions XS of the two views of kStereo; 0 and 1 are the photographs themselves.
   std::array<double, 2> stereo_views_x = {0, 1};
   StereoDisplay stereo_packing;
-  FitScope intensity_fit = FitScope::kFrame;  ///< of the new views (3.9–3.11)
-  bool preview_range_per_shot = false;        ///< else the range of the search
-  /// Each shot is searched in the range that is found in some of its pairs, match.disparities where
-  /// none is found; not with TemporalOptions::uses_past().
-  bool search_range_per_shot = false;
-  DepthVideoScale depth_scale;                          ///< of kDepthVideo
+  FitScope intensity_fit = FitScope::kFrame;      ///< of the new views (3.9–3.11)
+  bool preview_range_per_shot = false;            ///< else the range of the search
+  SearchScope search_scope = SearchScope::kFilm;  ///< with TemporalOptions::uses_past() always this
+  DepthVideoScale depth_scale;                    ///< of kDepthVideo
   VideoCoding depth_coding = VideoCoding::kHuffYuv_16;  ///< of kDepthVideo, a grey one
   TemporalOptions temporal;
   /// Extension of the disparity, confidence and depth resolution files without the dot, one of
@@ -183,7 +188,7 @@ struct SequenceOptions {
   }
   /// Whether shots must be found before the run.
   [[nodiscard]] bool needs_shots() const {
-    return needs_matched_shots() || search_range_per_shot || is_film();
+    return needs_matched_shots() || search_scope == SearchScope::kShot || is_film();
   }
   /// Whether pairs of each shot must be matched for that.
   [[nodiscard]] bool needs_matched_shots() const {

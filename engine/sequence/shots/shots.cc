@@ -66,13 +66,13 @@ class Survey {
     }
     ShotTable table = shots_at(*cuts, {first_frame, end_frame}, options_);
     for (const Shot& shot : table.shots) {
-      progress_.frames_total +=
-          static_cast<int>((options_.search_range_per_shot ? range_samples_of(shot).size() : 0) +
-                           (options_.needs_matched_shots() ? samples_of(shot).size() : 0));
+      progress_.frames_total += static_cast<int>(
+          (options_.search_scope == SearchScope::kShot ? range_samples_of(shot).size() : 0) +
+          (options_.needs_matched_shots() ? samples_of(shot).size() : 0));
     }
     // Each step in the order of the frames: videos without an index are decoded from their start.
     for (Shot& shot : table.shots) {
-      if (options_.search_range_per_shot && !find_range(shot)) {
+      if (options_.search_scope == SearchScope::kShot && !find_range(shot)) {
         return std::nullopt;
       }
     }

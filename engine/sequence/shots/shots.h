@@ -69,7 +69,7 @@ struct SurveyHooks {
 };
 
 /// Finds the shots of frames [first_frame, end_frame) of `pairs`, 0 ≤ first < end ≤ pair_count(),
-/// by their left images (shot_cuts.h), decoding only these. With options.search_range_per_shot, the
+/// by their left images (shot_cuts.h), decoding only these. With SearchScope::kShot, the
 /// search range of a shot is the union of find_disparity_range() over up to five of its frames,
 /// from the first to the last. If options.needs_matched_shots(), up to three frames of each (first,
 /// middle, last) are matched with options.match in that range: the sums of the regression (3.11),

@@ -10,6 +10,7 @@
   STEP(decode_step)               \
   STEP(rectify_step)              \
   STEP(correct_rows_step)         \
+  STEP(find_range_step)           \
   STEP(read_maps_step)            \
   STEP(match_step)                \
   STEP(finish_match_step)         \

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "apps/batch/batch_settings.h"
+#include "apps/batch/manifest.h"
+#include "apps/run/run_settings.h"
+#include "engine/options/settings.h"
+
+namespace vantage::apps {
+
+/// A manifest's item as a run: the options of the batch, then its own. Not movable: settings refer
+/// to the job.
+class BatchItem {
+ public:
+  /// Throws UsageError naming the item for options that are invalid or do not go together. Reads no
+  /// files but poses.
+  BatchItem(const ManifestItem& item, const BatchJob& batch, const SettingValue& options_of_all);
+  BatchItem(const BatchItem&) = delete;
+  BatchItem& operator=(const BatchItem&) = delete;
+
+  [[nodiscard]] const RunJob& job() const { return job_; }
+  /// Of one pair of images, whose files have no numbers: DIR/disparity.pfm.
+  [[nodiscard]] bool is_pair() const;
+  /// Of a pair whose result depends on no other pair in the same run. Pairs of equal options() can
+  /// be run together.
+  [[nodiscard]] bool goes_with_others() const;
+  /// Everything but the inputs, the range and the output.
+  [[nodiscard]] std::string options() const;
+  /// A file of settings for 'vantage run', which goes on with what is in `output`.
+  [[nodiscard]] std::string to_job_file(const std::string& output);
+  /// The same for a list of pairs with these options, of which bad ones are left out.
+  [[nodiscard]] std::string to_job_file_of_list(const std::string& list, const std::string& output);
+
+ private:
+  RunJob job_;
+  Settings settings_;
+};
+
+/// The options of the command line that hold for all items.
+SettingValue options_of_all(const Settings& settings);
+
+/// Reading `file` shows that pixels have at most 8 bits: their white level needs no other image.
+bool has_8_bits(const std::filesystem::path& file);
+
+}  // namespace vantage::apps
