@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <fstream>
 #include <string_view>
 
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/io/images/scene_mask.h"
 #include "engine/io/video/image_sequence.h"
 
@@ -26,7 +25,7 @@ constexpr std::array<std::string_view, 4> kOfPair = {"left", "right", "dispariti
 
 bool is_one_image(const std::string& source) {
   return has_image_extension(source) && source.find_first_of("%*?[") == std::string::npos &&
-         !fs::is_directory(source);
+         (is_address(source) || !fs::is_directory(source));
 }
 
 /// What an item's options say beside its images.
@@ -50,6 +49,13 @@ SettingValue options_of_all(const Settings& settings) {
     }
   }
   return options;
+}
+
+void check_items(const BatchJob& batch, const std::vector<ManifestItem>& items,
+                 const SettingValue& options_of_all) {
+  for (const ManifestItem& item : items) {
+    const BatchItem checked(item, batch, options_of_all);
+  }
 }
 
 BatchItem::BatchItem(const ManifestItem& item, const BatchJob& batch,
@@ -79,10 +85,8 @@ bool BatchItem::goes_with_others() const {
   const auto& masks = job_.input.masks;
   const bool has_mask_files =
       std::ranges::any_of(masks.files(), [](const std::string& file) { return !file.empty(); });
-  const bool knows_white =
-      job_.input.white_level || (has_8_bits(job_.input.left) && has_8_bits(job_.input.right));
-  return is_pair() && knows_white && !has_mask_files && !options.temporal.uses_past() &&
-         !options.needs_shots() && job_.poses.empty() && options.rows.keys.empty();
+  return is_pair() && !has_mask_files && !options.temporal.uses_past() && !options.needs_shots() &&
+         job_.poses.empty() && options.rows.keys.empty();
 }
 
 std::string BatchItem::options() const {
@@ -109,17 +113,6 @@ std::string BatchItem::to_job_file_of_list(const std::string& list, const std::s
   job_.search_scope = SearchScope::kPair;
   job_.keep_going = true;
   return to_job_file(output);
-}
-
-bool has_8_bits(const fs::path& file) {
-  constexpr std::string_view kPng("\x89PNG\r\n\x1A\n", 8);
-  constexpr std::size_t kPngDepth = 24;  // its place in the file
-  std::array<char, kPngDepth + 1> start = {};
-  if (!std::ifstream(file, std::ios::binary).read(start.data(), start.size())) {
-    return false;
-  }
-  const std::string_view bytes(start.data(), start.size());
-  return bytes.starts_with("\xFF\xD8\xFF") || (bytes.starts_with(kPng) && bytes.back() <= 8);
 }
 
 }  // namespace vantage::apps

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "apps/batch/batch_settings.h"
 #include "apps/batch/manifest.h"
@@ -23,8 +23,8 @@ class BatchItem {
   [[nodiscard]] const RunJob& job() const { return job_; }
   /// Of one pair of images, whose files have no numbers: DIR/disparity.pfm.
   [[nodiscard]] bool is_pair() const;
-  /// Of a pair whose result depends on no other pair in the same run. Pairs of equal options() can
-  /// be run together.
+  /// Of a pair whose result depends on no other pair in the same run, if its white level is known.
+  /// Pairs of equal options() can be run together.
   [[nodiscard]] bool goes_with_others() const;
   /// Everything but the inputs, the range and the output.
   [[nodiscard]] std::string options() const;
@@ -38,10 +38,11 @@ class BatchItem {
   Settings settings_;
 };
 
+/// Throws UsageError for the first item that is invalid.
+void check_items(const BatchJob& batch, const std::vector<ManifestItem>& items,
+                 const SettingValue& options_of_all);
+
 /// The options of the command line that hold for all items.
 SettingValue options_of_all(const Settings& settings);
-
-/// Reading `file` shows that pixels have at most 8 bits: their white level needs no other image.
-bool has_8_bits(const std::filesystem::path& file);
 
 }  // namespace vantage::apps

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <future>
 #include <map>
-#include <memory>
 #include <utility>
 
 #include "engine/error.h"
@@ -52,7 +53,7 @@ class JobMaker {
 
  private:
   void add_pair(int index, const BatchItem& item, const ItemCost& cost) {
-    if (item.goes_with_others()) {
+    if (item.goes_with_others() && cost.knows_white) {
       put(pairs_.try_emplace(item.options(), PlannedJob{.is_list = true}).first->second, index,
           cost);
       return;
@@ -84,6 +85,40 @@ class JobMaker {
   std::map<std::string, PlannedJob> pairs_;  ///< by options
 };
 
+/// Many at once: reading headers is mostly waiting for a store or a disk.
+std::vector<ItemCost> costs_of(const BatchJob& batch, const std::vector<ManifestItem>& items,
+                               const SettingValue& options,
+                               const std::function<void(int)>& progress) {
+  constexpr std::size_t kReaders = 32;
+  CostModel model;
+  std::vector<ItemCost> costs(items.size());
+  std::atomic<std::size_t> next = 0;
+  std::atomic<int> done = 0;
+  const auto read = [&](bool tells) {
+    for (std::size_t i = next++; i < items.size(); i = next++) {
+      try {
+        costs[i] = model.cost_of(BatchItem(items[i], batch, options));
+        ++done;
+        if (tells) {
+          progress(done);
+        }
+      } catch (...) {
+        next = items.size();  // the others end
+        throw;
+      }
+    }
+  };
+  std::vector<std::future<void>> readers;
+  for (std::size_t i = 1; i < std::min(kReaders, items.size()); ++i) {
+    readers.push_back(std::async(std::launch::async, read, false));
+  }
+  read(true);
+  for (std::future<void>& reader : readers) {
+    reader.get();
+  }
+  return costs;
+}
+
 }  // namespace
 
 BatchPlan make_plan(const BatchJob& batch, const std::vector<ManifestItem>& items,
@@ -93,10 +128,9 @@ BatchPlan make_plan(const BatchJob& batch, const std::vector<ManifestItem>& item
   const scheduler::Machine machine = scheduler::detect_machine();
   const int threads = thread_count(batch.run.common.execution, machine);
   JobMaker jobs(batch.job_seconds * threads);
-  CostModel costs;
+  const std::vector<ItemCost> costs = costs_of(batch, items, options, progress);
   for (std::size_t i = 0; i < items.size(); ++i) {
-    const BatchItem item(items[i], batch, options);
-    const ItemCost cost = costs.cost_of(item);
+    const ItemCost& cost = costs[i];
     if (!cost.problem.empty()) {
       plan.problems.push_back(fmt::format("line {}: {}", items[i].line, cost.problem));
     }
@@ -104,8 +138,7 @@ BatchPlan make_plan(const BatchJob& batch, const std::vector<ManifestItem>& item
     plan.core_seconds += cost.core_seconds;
     plan.gigabytes_in += 1e-9 * static_cast<double>(cost.bytes_in);
     plan.gigabytes_out += 1e-9 * static_cast<double>(cost.bytes_out);
-    jobs.add(static_cast<int>(i), item, cost);
-    progress(static_cast<int>(i) + 1);
+    jobs.add(static_cast<int>(i), BatchItem(items[i], batch, options), cost);
   }
   plan.jobs = jobs.finish();
   return plan;

@@ -15,13 +15,16 @@ namespace {
 constexpr std::size_t kShown = 20;  ///< more lines would hide the rest; the file has all
 constexpr double kHour_s = 3600;
 
+std::string counted(std::size_t count, std::string_view thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 std::string description_of(const PlannedJob& job) {
   if (job.shard) {
     return fmt::format("item {}, part {}/{}", job.items.front() + 1, job.shard->index,
                        job.shard->count);
   }
-  return fmt::format("{} {}{}", job.items.size(), job.is_list ? "pair" : "item",
-                     job.items.size() == 1 ? "" : "s");
+  return counted(job.items.size(), job.is_list ? "pair" : "item");
 }
 
 }  // namespace
@@ -36,9 +39,9 @@ void BatchTotals::add(const ItemResult& result) {
 
 std::string describe_plan(const BatchPlan& plan, const BatchJob& batch, std::size_t items) {
   std::string text = fmt::format(
-      "{} items, {} frames: {} jobs of about {:.0f} s; {:.2f} core-hours; {:.2f} GB in, {:.2f} GB "
-      "out (estimated)\n",
-      items, plan.frames, plan.jobs.size(), batch.job_seconds, plan.core_seconds / kHour_s,
+      "{}, {}: {} of about {:.0f} s; {:.2f} core-hours; {:.2f} GB in, {:.2f} GB out (estimated)\n",
+      counted(items, "item"), counted(static_cast<std::size_t>(plan.frames), "frame"),
+      counted(plan.jobs.size(), "job"), batch.job_seconds, plan.core_seconds / kHour_s,
       plan.gigabytes_in, plan.gigabytes_out);
   TextTable table("jobs", {"job", "holds", "core-seconds", "MiB"});
   for (std::size_t i = 0; i < std::min(plan.jobs.size(), kShown); ++i) {

@@ -77,7 +77,6 @@ class BatchSession {
       report_.write(job_.run.common.report);
       return kExitDone;
     }
-    make_folder(job_.run.output);
     store_ = std::make_unique<FolderStore>(job_.run.output);
     state_ = std::make_unique<BatchState>(*store_);
     leases_ = std::make_unique<Leases>(*store_, std::string(BatchState::kPrefix) + "leases/",
@@ -135,20 +134,31 @@ class BatchSession {
         }
         return checked(std::move(*plan));
       }
+      check_items(job_, items_, options_);
+      make_folder(job_.run.output);
       leases_->look();
       if (const std::unique_ptr<Lease> lease = leases_->take("plan")) {
-        const BatchPlan plan = plan_now();
         is_new_ = true;
-        (void)state_->keep_plan(plan);
-        lease->finish();
-        if (!job_.run.common.quiet) {
-          tell("{}", describe_plan(plan, job_, items_.size()));
-        }
+        make_and_keep_plan(*lease);
       } else {
         std::this_thread::sleep_for(std::chrono::milliseconds(200));
       }
     }
     return std::nullopt;
+  }
+
+  void make_and_keep_plan(Lease& lease) {
+    try {
+      const BatchPlan plan = plan_now();
+      (void)state_->keep_plan(plan);
+      lease.finish();
+      if (!job_.run.common.quiet) {
+        tell("{}", describe_plan(plan, job_, items_.size()));
+      }
+    } catch (...) {
+      lease.hand_back();
+      throw;
+    }
   }
 
   /// Of jobs, and of the items whose parts they are.

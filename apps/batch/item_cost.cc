@@ -1,19 +1,14 @@
 #include "apps/batch/item_cost.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <span>
-#include <string_view>
-#include <system_error>
 #include <vector>
 
+#include "apps/batch/picture_header.h"
 #include "engine/error.h"
 #include "engine/examination/pair_examination.h"
-#include "engine/io/files/file_bytes.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/jobs/sequence_session.h"
 #include "engine/sequence/memory_plan.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -31,9 +26,7 @@ constexpr double kUsualMemoryPerPixel = 300;
 std::uint64_t bytes_of_files(const std::vector<fs::path>& files) {
   std::uint64_t bytes = 0;
   for (const fs::path& file : files) {
-    std::error_code error;
-    const std::uintmax_t size = fs::file_size(file, error);
-    bytes += error ? 0 : size;
+    bytes += bytes_of_file(file);
   }
   return bytes;
 }
@@ -74,42 +67,11 @@ double bytes_per_pixel(const RunJob& job) {
   return bytes;
 }
 
-/// The size that the header of a PNG or JPEG file says; empty for other formats.
-std::optional<ImageExtent> size_in_header(const fs::path& file) {
-  constexpr std::size_t kStart = 1 << 16;
-  std::vector<std::uint8_t> start(kStart);
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(reinterpret_cast<char*>(start.data()), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(stream.gcount()));
-  const FileBytes bytes(start, file.string());
-  const auto number = [&](std::size_t place) {
-    return static_cast<int>(bytes.integer<std::uint16_t>(place, std::endian::big));
-  };
-  try {
-    if (bytes.has_at(1, "PNG")) {
-      return ImageExtent{number(18), number(22)};
-    }
-    if (!bytes.has_at(0, "\xFF\xD8")) {
-      return std::nullopt;
-    }
-    // Segments up to the one of the frame, SOF0 to SOF15 without DHT, JPG and DAC.
-    for (std::size_t place = 2; bytes.byte(place) == 0xFF;
-         place += 2 + static_cast<std::size_t>(number(place + 2))) {
-      const int marker = bytes.byte(place + 1);
-      if (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) {
-        return ImageExtent{number(place + 7), number(place + 5)};
-      }
-    }
-  } catch (const Error&) {
-    return std::nullopt;  // cut off
-  }
-  return std::nullopt;
-}
-
 struct Opened {
   std::unique_ptr<PairSource> pairs;  ///< null: the header said enough
   ImageExtent size;
   int frames = 1;
+  bool knows_white = false;  ///< without looking at pixels
   std::uint64_t bytes_in = 0;
 };
 
@@ -122,10 +84,12 @@ Opened open_item(const BatchItem& item) {
   const RunJob& job = item.job();
   Opened opened;
   if (item.is_pair()) {
-    const std::vector<fs::path> files = {job.input.left, job.input.right};
-    opened.bytes_in = bytes_of_files(files);
-    if (const auto size = size_in_header(job.input.left); size && fs::exists(job.input.right)) {
-      opened.size = *size;
+    const auto left = read_picture_header(job.input.left);
+    const auto right = read_picture_header(job.input.right);
+    if (left && right) {
+      opened.size = {left->width_px, left->height_px};
+      opened.knows_white = std::max(left->bits, right->bits) <= 8 || job.input.white_level;
+      opened.bytes_in = bytes_of_files({job.input.left, job.input.right});
       return opened;
     }
   }
@@ -142,8 +106,9 @@ Opened open_item(const BatchItem& item) {
 
 }  // namespace
 
-const CostModel::Sample& CostModel::sample_of(const BatchItem& item, const ImageExtent& size,
-                                              PairSource* pairs) {
+CostModel::Sample CostModel::sample_of(const BatchItem& item, const ImageExtent& size,
+                                       PairSource* pairs) {
+  const std::scoped_lock lock(mutex_);
   const auto [known, is_new] = samples_.try_emplace(item.options());
   Sample& sample = known->second;
   if (!is_new) {
@@ -186,7 +151,7 @@ ItemCost CostModel::cost_of(const BatchItem& item) {
   try {
     const Opened opened = open_item(item);
     const MatchOptions& match = item.job().sequence.match;
-    const Sample& sample = sample_of(item, opened.size, opened.pairs.get());
+    const Sample sample = sample_of(item, opened.size, opened.pairs.get());
     const double pixels = static_cast<double>(opened.size.width_px) * opened.size.height_px;
     const double candidates = match.disparities_auto
                                   ? sample.candidates_per_px * opened.size.width_px
@@ -194,6 +159,7 @@ ItemCost CostModel::cost_of(const BatchItem& item) {
     cost.frames = opened.frames;
     cost.core_seconds = opened.frames * pixels * candidates * sample.seconds_per_cell;
     cost.memory_bytes = static_cast<std::size_t>(pixels * sample.memory_per_pixel);
+    cost.knows_white = opened.knows_white;
     cost.bytes_in = opened.bytes_in;
     cost.bytes_out =
         static_cast<std::uint64_t>(opened.frames * pixels * bytes_per_pixel(item.job()));

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -16,13 +17,15 @@ struct ItemCost {
   int frames = 0;
   double core_seconds = 0;
   std::size_t memory_bytes = 0;
+  bool knows_white = false;  ///< of a pair: whatever other images hold
   std::uint64_t bytes_in = 0;
   std::uint64_t bytes_out = 0;
   std::string problem;  ///< why the input cannot be opened; empty: it can
 };
 
 /// Estimates what items need. Of each set of options the first pair that can be read is matched on
-/// one thread; others cost as much per pixel and candidate. Thread rule: one thread at a time.
+/// one thread; others cost as much per pixel and candidate. Thread rule: may be used
+/// concurrently.
 class CostModel {
  public:
   /// Looks at no more than the headers where a pair of such options is known. Does not throw for
@@ -36,8 +39,9 @@ class CostModel {
     double candidates_per_px = 0;  ///< per pixel of the width, where the range is found
     double memory_per_pixel = 0;   ///< bytes
   };
-  const Sample& sample_of(const BatchItem& item, const ImageExtent& size, PairSource* pairs);
+  Sample sample_of(const BatchItem& item, const ImageExtent& size, PairSource* pairs);
 
+  std::mutex mutex_;
   std::map<std::string, Sample> samples_;  ///< by options
 };
 

@@ -12,6 +12,7 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/json_text.h"
+#include "engine/io/files/remote_files.h"
 #include "engine/options/match_settings.h"
 #include "engine/seconds_since.h"
 #include "engine/sequence/journal/journal_content.h"
@@ -243,8 +244,8 @@ void JobRunner::run_list(const std::vector<int>& items, const fs::path& work,
     const BatchItem of_item = item(index);
     const RunJob& job = of_item.job();
     const MatchOptions& match = job.sequence.match;
-    list += fmt::format("{},{},{}\n", csv_field(fs::absolute(job.input.left).string()),
-                        csv_field(fs::absolute(job.input.right).string()),
+    list += fmt::format("{},{},{}\n", csv_field(absolute_path(job.input.left).string()),
+                        csv_field(absolute_path(job.input.right).string()),
                         match.disparities_auto
                             ? ","
                             : fmt::format("{},{}", match.disparities.min, match.disparities.max));

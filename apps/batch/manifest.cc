@@ -14,6 +14,8 @@
 #include "engine/io/files/encoded_text.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/json_text.h"
+#include "engine/io/files/remote_files.h"
+#include "engine/io/video/streams/stream_input.h"
 #include "engine/quoted_text.h"
 
 namespace vantage::apps {
@@ -55,8 +57,9 @@ class ItemOptions {
 void take(const Setting& setting, const SettingValue& value, const fs::path& folder,
           const std::string& place, ManifestItem& item) {
   const auto located = [&](const SettingValue& path) -> SettingValue {
-    return path.is_string() && setting.path == PathRole::kInput
-               ? SettingValue(stored_name((folder / path.get<std::string>()).string()))
+    return path.is_string() && setting.path == PathRole::kInput &&
+                   !is_stream_name(path.get<std::string>())
+               ? SettingValue(stored_name(joined_path(folder, path.get<std::string>()).string()))
                : path;
   };
   SettingValue kept = located(value);
@@ -190,7 +193,7 @@ void require_different_outputs(const std::vector<ManifestItem>& items, const fs:
 
 std::vector<ManifestItem> read_manifest(const fs::path& file) {
   const std::string text = read_file_text(file);
-  const fs::path absolute = fs::absolute(file);
+  const fs::path absolute = absolute_path(file);
   const ItemOptions options;
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   std::vector<ManifestItem> items = start != std::string::npos && text[start] == '{'
