@@ -7,7 +7,6 @@
 
 #include "apps/batch/batch_worker.h"
 #include "apps/reports/text_table.h"
-#include "engine/io/files/atomic_file.h"
 
 namespace vantage::apps {
 namespace {
@@ -93,8 +92,8 @@ std::vector<ItemResult> item_results(const BatchPlan& plan, BatchState& state) {
   return all;
 }
 
-void write_item_lines(const std::filesystem::path& file, const std::vector<ManifestItem>& items,
-                      const std::vector<ItemResult>& results) {
+std::string item_lines(const std::vector<ManifestItem>& items,
+                       const std::vector<ItemResult>& results) {
   std::string text;
   for (const ItemResult& result : results) {
     const ManifestItem& item = items[static_cast<std::size_t>(result.item)];
@@ -103,7 +102,7 @@ void write_item_lines(const std::filesystem::path& file, const std::vector<Manif
     values.erase("item");
     text += values.dump(-1, ' ', false, SettingValue::error_handler_t::replace) + "\n";
   }
-  write_text_file(file, text);
+  return text;
 }
 
 std::string describe_results(const std::vector<ManifestItem>& items,

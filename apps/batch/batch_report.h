@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -28,9 +27,9 @@ SettingValue plan_values(const BatchPlan& plan);
 
 /// The result of each item that is done, in the order of the manifest.
 std::vector<ItemResult> item_results(const BatchPlan& plan, BatchState& state);
-/// Writes a JSON line per item, with its line in the manifest and its output. Throws Error.
-void write_item_lines(const std::filesystem::path& file, const std::vector<ManifestItem>& items,
-                      const std::vector<ItemResult>& results);
+/// A JSON line per item, with its line in the manifest and its output.
+std::string item_lines(const std::vector<ManifestItem>& items,
+                       const std::vector<ItemResult>& results);
 /// Items by status, and those that failed with the command that repeats each.
 std::string describe_results(const std::vector<ManifestItem>& items,
                              const std::vector<ItemResult>& results);

@@ -19,13 +19,14 @@
 #include "apps/process/interrupt.h"
 #include "apps/process/outputs.h"
 #include "apps/process/progress.h"
+#include "apps/process/scratch_folder.h"
 #include "apps/process/tell.h"
 #include "apps/reports/run_report.h"
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/checksum.h"
-#include "engine/io/store/folder_store.h"
-#include "engine/sequence/journal/run_journal.h"
+#include "engine/io/files/remote_files.h"
+#include "engine/io/store/opened_store.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "scheduler/interruption.h"
 
@@ -52,9 +53,6 @@ void check_files(const BatchJob& job, const Settings& settings) {
   FileChecks files(settings);
   files.add_output(job.run.common.report, "--report", OutputKind::kText);
   files.add_output(job.metrics, "--metrics", OutputKind::kText);
-  if (RunJournal::is_present(fs::path(job.run.output) / ".vantage")) {
-    throw Error(fmt::format("{}: holds a run, expected a folder for a batch", job.run.output));
-  }
 }
 
 /// A batch as one process works on it.
@@ -67,7 +65,8 @@ class BatchSession {
         stop_(interrupt_flag()),
         items_(read_manifest(job.manifest)),
         options_(options_of_all(settings)),
-        joins_(job.worker || job.task) {}
+        joins_(job.worker || job.task),
+        is_remote_(is_address(job.run.output)) {}
 
   int run() {
     if (job_.run.dry_run) {
@@ -77,7 +76,10 @@ class BatchSession {
       report_.write(job_.run.common.report);
       return kExitDone;
     }
-    store_ = std::make_unique<FolderStore>(job_.run.output);
+    store_ = open_store(job_.run.output, [this] { return stop_.load(); });
+    if (store_->info(".vantage/run.json")) {
+      throw Error(fmt::format("{}: holds a run, expected a folder for a batch", job_.run.output));
+    }
     state_ = std::make_unique<BatchState>(*store_);
     leases_ = std::make_unique<Leases>(*store_, std::string(BatchState::kPrefix) + "leases/",
                                        name_of_worker(),
@@ -135,7 +137,9 @@ class BatchSession {
         return checked(std::move(*plan));
       }
       check_items(job_, items_, options_);
-      make_folder(job_.run.output);
+      if (!is_remote_) {
+        make_folder(job_.run.output);
+      }
       leases_->look();
       if (const std::unique_ptr<Lease> lease = leases_->take("plan")) {
         is_new_ = true;
@@ -190,7 +194,13 @@ class BatchSession {
 
   int work(const BatchPlan& plan) {
     BatchTotals totals;
-    JobRunner runner(job_, items_, options_, stop_);
+    std::optional<ScratchFolder> scratch;
+    fs::path work = fs::path(job_.run.output) / BatchState::kPrefix / "work";
+    if (is_remote_) {
+      const fs::path wanted = job_.scratch.empty() ? fs::temp_directory_path() : fs::path(job_.scratch);
+      work = scratch.emplace(wanted / "batch").path();
+    }
+    JobRunner runner(job_, items_, options_, *store_, work, stop_);
     BatchWorker worker(job_, plan, *state_, *leases_, runner, stop_,
                        [&](const std::string& name, const std::vector<ItemResult>& results) {
                          tell_job(name, results, worker, totals);
@@ -233,8 +243,10 @@ class BatchSession {
 
   int finish(const BatchPlan& plan) {
     const std::vector<ItemResult> results = item_results(plan, *state_);
-    const fs::path lines = fs::path(job_.run.output) / kItemLines;
-    write_item_lines(lines, items_, results);
+    const std::string lines = joined_path(job_.run.output, kItemLines).string();
+    const std::string text = item_lines(items_, results);
+    (void)store_->put(kItemLines, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
+                      {});
     BatchTotals totals;
     for (const ItemResult& result : results) {
       totals.add(result);
@@ -246,7 +258,7 @@ class BatchSession {
                          {"core_seconds", totals.core_seconds}});
     report_.write(job_.run.common.report);
     if (!job_.run.common.quiet) {
-      tell("{}batch: all items are in {}\n", describe_results(items_, results), lines.string());
+      tell("{}batch: all items are in {}\n", describe_results(items_, results), lines);
     }
     return totals.failed > 0 ? kExitSkipped : kExitDone;
   }
@@ -258,6 +270,7 @@ class BatchSession {
   std::vector<ManifestItem> items_;
   SettingValue options_;
   bool joins_;
+  bool is_remote_;       ///< the output is an address
   bool is_new_ = false;  ///< this process made the plan
   std::unique_ptr<ObjectStore> store_;
   std::unique_ptr<BatchState> state_;

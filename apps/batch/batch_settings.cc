@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "apps/batch/array_variables.h"
+#include "apps/inputs/input_limits.h"
 #include "engine/error.h"
+#include "engine/io/files/remote_files.h"
 
 namespace vantage::apps {
 namespace {
@@ -93,6 +95,15 @@ void add_batch_settings(Settings& settings, BatchJob& job) {
   add_duration_setting(settings, "lease", job.lease_seconds, 2, kDay_s,
                        "A worker that shows no sign of life for so long is taken for dead, and "
                        "others take its jobs");
+  settings.path("scratch", job.scratch, "DIR",
+                "With an output at s3://: folder of this machine in which runs work; default: that "
+                "of temporary files");
+  add_size_setting(settings, "scratch-limit", job.scratch_limit_bytes,
+                   "What a run may take there, such as 20G: results are put into the store before "
+                   "it is half full; auto: no limit");
+  add_duration_setting(settings, "keep-every", job.keep_seconds, 1, kDay_s,
+                       "With an output at s3://: time between two times that finished frames and "
+                       "chunks are put there; what a worker that dies loses");
   settings.path("metrics", job.metrics, "FILE",
                 "Write counters for Prometheus's textfile collector, after each job");
   settings.set_short_help(
@@ -133,6 +144,10 @@ void check_batch(const BatchJob& job, const Settings& settings) {
   if (job.run.resume && (job.worker || job.task)) {
     throw UsageError(fmt::format("--resume has no effect with --{}, which joins what is there",
                                  job.worker ? "worker" : "index"));
+  }
+  if (!is_address(job.run.output)) {
+    settings.refuse_idle({"scratch", "scratch-limit", "keep-every"},
+                         "without an output at s3://, expected it with one only");
   }
   if (job.attempts < 1 || job.attempts > 100) {
     throw UsageError(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -25,7 +26,10 @@ struct BatchJob {
   double grace_seconds = 90;  ///< from a signal until work is handed back, 1 s to a day
   double lease_seconds = 60;  ///< a worker that shows no sign for so long is gone, 2 s to a day
   int attempts = 3;           ///< of an item that fails, 1..100
-  std::string metrics;        ///< file for Prometheus; empty: none
+  std::string scratch;        ///< folder of this machine; empty: that of temporary files
+  std::optional<std::size_t> scratch_limit_bytes;
+  double keep_seconds = 60;  ///< between two times that results are put into a store, 1 s to a day
+  std::string metrics;       ///< file for Prometheus; empty: none
 };
 
 /// Binds all fields of `job`: the options of 'vantage batch'.

@@ -85,7 +85,7 @@ std::vector<ItemResult> BatchWorker::join_parts(const std::string& name) {
   if (whole.failed) {
     return {whole};  // there is nothing to join
   }
-  const std::optional<ItemResult> joined = runner_.merge(whole.item);
+  const std::optional<ItemResult> joined = runner_.join(whole.item, name);
   if (!joined) {
     return {};
   }

@@ -9,62 +9,64 @@
 
 #include "apps/batch/batch_item.h"
 #include "apps/batch/batch_plan.h"
+#include "apps/batch/child_run.h"
 #include "apps/batch/item_result.h"
 #include "apps/batch/manifest.h"
+#include "engine/io/store/object_store.h"
 
 namespace vantage::apps {
 
 /// Does the jobs of a batch: each is one or more runs of this program as children, so that what
-/// ends a run does not end the batch. Thread rule: one thread at a time.
+/// ends a run does not end the batch. Runs of a batch in a folder write there; others work in a
+/// scratch folder, and their results are kept in the store as they are made. Thread rule: one
+/// thread at a time.
 class JobRunner {
  public:
-  /// All must outlive it. `options` hold for all items. Once `stop` is set, children finish their
-  /// frames, and are killed where that takes too long.
+  /// All must outlive it. `options` hold for all items; `store` is that of the batch; `scratch` is
+  /// a folder of this machine: for a batch in a folder, within that. Once `stop` is set, children
+  /// finish their frames, and are killed where that takes too long.
   JobRunner(const BatchJob& batch, const std::vector<ManifestItem>& items,
-            const SettingValue& options, const std::atomic<bool>& stop);
+            const SettingValue& options, ObjectStore& store, std::filesystem::path scratch,
+            const std::atomic<bool>& stop);
 
-  /// The results of all items of `job`, except those of `known`. Pairs are all told at the end,
-  /// others after each one, by `on_results`. Fewer when `stop` was set. Throws Error where the
-  /// folder of the batch cannot be written.
+  /// Adds the results of the items of `job` to `known`, which has those that are done, and tells
+  /// `on_results` when some are new. Fewer when `stop` was set. Throws Error where the results
+  /// cannot be written.
   void run(const PlannedJob& job, const std::string& name, std::vector<ItemResult>& known,
            const std::function<void()>& on_results);
   /// Joins the parts of an item, all of which are done. Empty when `stop` was set.
-  std::optional<ItemResult> merge(int item);
+  std::optional<ItemResult> join(int item, const std::string& name);
 
  private:
-  /// How a child ended.
-  struct Ending {
-    int exit_code = 0;
-    std::string problem = {};   ///< its last message
-    SettingValue results = {};  ///< of its report; null: there is none
-    int attempts = 1;
-    double seconds = 0;
-  };
   [[nodiscard]] bool is_stopped() const { return stop_.load(); }
-  [[nodiscard]] Ending run_child(const std::vector<std::string>& words,
-                                 const std::filesystem::path& report) const;
-  [[nodiscard]] Ending try_child(const std::vector<std::string>& words,
-                                 const std::filesystem::path& report) const;
-  [[nodiscard]] std::optional<ItemResult> run_item(int index, const std::optional<Shard>& shard,
-                                                   const std::filesystem::path& work) const;
-  /// Empty where the child did not get to its end because `stop` was set.
-  [[nodiscard]] std::optional<ItemResult> result_of(int index, const Ending& ending) const;
+  std::optional<ItemResult> run_item(int index, const std::optional<Shard>& shard,
+                                     const std::filesystem::path& work);
+  ChildEnding run_in_scratch(const RunJob& job, const std::string& output,
+                             const std::vector<std::string>& words,
+                             const std::filesystem::path& work);
   void run_list(const std::vector<int>& items, const std::filesystem::path& work,
-                std::vector<ItemResult>& results) const;
-  void take_list_results(const std::vector<int>& items, const RunJob& run, const Ending& ending,
-                         std::vector<ItemResult>& results) const;
-  [[nodiscard]] ItemResult failed(int item, const Ending& ending) const;
-  [[nodiscard]] ItemResult done(int item, const Ending& ending) const;
+                std::vector<ItemResult>& results);
+  void take_list_results(const std::vector<int>& items, const RunJob& run,
+                         const ChildEnding& ending, std::vector<ItemResult>& results);
+  /// Gives a file its final place. Throws Error where another file is there.
+  void deliver(const std::filesystem::path& from, const std::string& name,
+               const FileContent& content);
+  ItemResult failed(int item, const ChildEnding& ending);
   [[nodiscard]] BatchItem item(int index) const {
     return {items_[static_cast<std::size_t>(index)], batch_, options_};
+  }
+  [[nodiscard]] const std::string& output_of(int index) const {
+    return items_[static_cast<std::size_t>(index)].output;
   }
 
   const BatchJob& batch_;
   const std::vector<ManifestItem>& items_;
   const SettingValue& options_;
+  ObjectStore& store_;
+  std::filesystem::path scratch_;
   const std::atomic<bool>& stop_;
-  std::filesystem::path state_;  ///< folder of the batch's own files
-  std::string program_;
+  bool is_remote_;
+  ChildRuns children_;
 };
 
 }  // namespace vantage::apps
