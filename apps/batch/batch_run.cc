@@ -4,8 +4,11 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <thread>
 
 #include "apps/batch/batch_plan.h"
@@ -27,6 +30,7 @@
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/remote_files.h"
 #include "engine/io/store/opened_store.h"
+#include "engine/seconds_since.h"
 #include "engine/sequence/options/sequence_layout.h"
 #include "scheduler/interruption.h"
 
@@ -55,6 +59,29 @@ void check_files(const BatchJob& job, const Settings& settings) {
   files.add_output(job.metrics, "--metrics", OutputKind::kText);
 }
 
+/// After a signal the store is still needed, to hand back what was begun.
+class EndOfGrace {
+ public:
+  EndOfGrace(const std::atomic<bool>& stop, double grace_s)
+      : stop_(stop),
+        grace_s_(grace_s),
+        seen_(std::make_shared<std::once_flag>()),
+        since_(std::make_shared<std::chrono::steady_clock::time_point>()) {}
+  bool operator()() const {
+    if (!stop_.load()) {
+      return false;
+    }
+    std::call_once(*seen_, [this] { *since_ = std::chrono::steady_clock::now(); });
+    return seconds_since(*since_) > grace_s_;
+  }
+
+ private:
+  const std::atomic<bool>& stop_;
+  double grace_s_;
+  std::shared_ptr<std::once_flag> seen_;
+  std::shared_ptr<std::chrono::steady_clock::time_point> since_;
+};
+
 /// A batch as one process works on it.
 class BatchSession {
  public:
@@ -76,7 +103,7 @@ class BatchSession {
       report_.write(job_.run.common.report);
       return kExitDone;
     }
-    store_ = open_store(job_.run.output, [this] { return stop_.load(); });
+    store_ = open_store(job_.run.output, EndOfGrace(stop_, job_.grace_seconds));
     if (store_->info(".vantage/run.json")) {
       throw Error(fmt::format("{}: holds a run, expected a folder for a batch", job_.run.output));
     }
@@ -197,7 +224,8 @@ class BatchSession {
     std::optional<ScratchFolder> scratch;
     fs::path work = fs::path(job_.run.output) / BatchState::kPrefix / "work";
     if (is_remote_) {
-      const fs::path wanted = job_.scratch.empty() ? fs::temp_directory_path() : fs::path(job_.scratch);
+      const fs::path wanted =
+          job_.scratch.empty() ? fs::temp_directory_path() : fs::path(job_.scratch);
       work = scratch.emplace(wanted / "batch").path();
     }
     JobRunner runner(job_, items_, options_, *store_, work, stop_);

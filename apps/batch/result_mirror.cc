@@ -30,7 +30,9 @@ void empty_file(const fs::path& file, std::uint64_t bytes) {
   fs::resize_file(file, bytes, ignored);
 }
 
-bool is_in(FrameRange frames, int frame) { return frame >= frames.first && frame < frames.end; }
+bool is_in_any(const std::vector<FrameRange>& ranges, int frame) {
+  return std::ranges::any_of(ranges, [frame](FrameRange range) { return range.contains(frame); });
+}
 
 }  // namespace
 
@@ -75,17 +77,6 @@ void ResultMirror::fetch() {
   std::ranges::for_each(names, [&](const std::string& name) { fetch_file(name); });
   const JournalContent journal = read_journal(layout_);
   std::vector<FrameRange> in_videos;
-  for (const SegmentRecord& segment : journal.segments) {
-    const bool is_there = std::ranges::all_of(
-        segment.files, [&](const FileRecord& file) { return segments.contains(file.name); });
-    if (is_there) {
-      in_videos.push_back(segment.frames);
-      for (const FileRecord& file : segment.files) {
-        fetch_file(file.name);
-        kept_.insert(file.name);
-      }
-    }
-  }
   for (const JoinRecord& join : journal.joins) {
     const bool is_there = std::ranges::all_of(join.files, [&](const FileRecord& file) {
       return store_.info(prefix_ + file.name).has_value();
@@ -95,12 +86,20 @@ void ResultMirror::fetch() {
       std::ranges::for_each(join.files, [&](const FileRecord& file) { stand_in_for(file); });
     }
   }
+  for (const SegmentRecord& segment : journal.segments) {
+    const bool is_there = std::ranges::all_of(
+        segment.files, [&](const FileRecord& file) { return segments.contains(file.name); });
+    if (is_there && !is_in_any(in_videos, segment.frames.first)) {
+      in_videos.push_back(segment.frames);
+      for (const FileRecord& file : segment.files) {
+        fetch_file(file.name);
+        kept_.insert(file.name);
+      }
+    }
+  }
   for (const auto& [frame, record] : journal.frames) {
     // Frames that are in no video yet are made again, from what they are made of.
-    const bool is_done =
-        !layout_.has_videos() || std::ranges::any_of(in_videos, [frame = frame](FrameRange range) {
-          return is_in(range, frame);
-        });
+    const bool is_done = !layout_.has_videos() || is_in_any(in_videos, frame);
     if (is_done) {
       std::ranges::for_each(record.files, [&](const FileRecord& file) { stand_in_for(file); });
     }
