@@ -1,6 +1,6 @@
 #include "apps/commands/commands.h"
-#include "apps/run/submit_job.h"
 #include "apps/settings/command_line.h"
+#include "apps/submit/submit_job.h"
 #include "engine/options/settings.h"
 
 namespace vantage::apps {

@@ -8,7 +8,6 @@
 #include "apps/inputs/input_limits.h"
 #include "apps/inputs/rectification_check.h"
 #include "apps/process/outputs.h"
-#include "apps/run/slurm_scripts.h"
 #include "apps/run/stream_run.h"
 #include "apps/settings/depth_video_settings.h"
 #include "apps/settings/toml_file.h"
@@ -160,6 +159,10 @@ void complete(RunJob& job, const Settings& settings) {
   check_sequence(job, settings);
   require_disparity_resolution(job.sequence.disparity_step_px);
   job.common.execution.validate();
+}
+
+std::filesystem::path slurm_folder(const std::filesystem::path& run_folder) {
+  return run_folder / ".vantage" / "slurm";
 }
 
 void add_run_outputs(const SequenceLayout& layout, bool has_comfort, const std::string& option,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -44,6 +45,15 @@ void add_run_settings(Settings& settings, RunJob& job);
 /// Reads the files of poses and completes all fields. Throws UsageError for invalid fields and
 /// combinations. Reads no other files.
 void complete(RunJob& job, const Settings& settings);
+
+/// The files that a run on a cluster needs beside those of the run itself, in DIR/.vantage/slurm:
+///   submit.toml, job.toml  all settings of the submission, and of the run in its tasks
+///   array.sh, merge.sh     the job array and the job after it
+///   task-1.log …           what the tasks and the merge printed, of all attempts
+///   failures-JOB_TASK      a line for each failed attempt
+///   report-1.json …        --report of the tasks
+///   submitted.json         the ids of the jobs
+std::filesystem::path slurm_folder(const std::filesystem::path& run_folder);
 
 /// Adds to `files` what runs write to the folder of `layout`, which `option` names.
 void add_run_outputs(const SequenceLayout& layout, bool has_comfort, const std::string& option,

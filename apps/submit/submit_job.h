@@ -1,7 +1,7 @@
 #pragma once
 
 #include "apps/run/run_settings.h"
-#include "apps/run/slurm_scripts.h"
+#include "apps/submit/slurm_scripts.h"
 #include "engine/options/settings.h"
 
 namespace vantage::apps {

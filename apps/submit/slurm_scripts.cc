@@ -1,4 +1,4 @@
-#include "apps/run/slurm_scripts.h"
+#include "apps/submit/slurm_scripts.h"
 
 #include <fmt/format.h>
 
@@ -140,10 +140,6 @@ exit "$code"
 )BASH";
 
 }  // namespace
-
-std::filesystem::path slurm_folder(const std::filesystem::path& run_folder) {
-  return run_folder / ".vantage" / "slurm";
-}
 
 void require_folder_for_scripts(const std::filesystem::path& run_folder) {
   for (const unsigned char letter : run_folder.string()) {

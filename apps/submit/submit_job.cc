@@ -1,4 +1,4 @@
-#include "apps/run/submit_job.h"
+#include "apps/submit/submit_job.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "apps/run/slurm_options.h"
+#include "apps/submit/slurm_options.h"
 
 #include <fmt/format.h>
 
