@@ -72,26 +72,13 @@ void add_task_setting(Settings& settings, std::optional<ArrayTask>& task) {
 
 }  // namespace
 
-void add_batch_settings(Settings& settings, BatchJob& job) {
-  settings
-      .positional(
-          "manifest", job.manifest,
-          "CSV file with a heading, or JSON lines: an item each, with output, inputs such as "
-          "left and right or stereo, and any option of run")
-      .required = true;
-  add_run_settings(settings, job.run);
+void add_job_settings(Settings& settings, BatchJob& job) {
   settings.start_group("Batch", false);
   add_duration_setting(settings, "job-time", job.job_seconds, 1, 7 * kDay_s,
                        "Time that a job should take: small items come together, large films are "
                        "divided");
-  settings.flag("worker", job.worker,
-                "Join the batch in the output folder, or start it: take jobs until none is left");
-  add_task_setting(settings, job.task);
-  settings.flag("retry-failed", job.retry_failed, "Try the items again that have failed");
   settings.integer("attempts", job.attempts, "N",
                    "How often an item is tried that fails, 1 to 100");
-  add_duration_setting(settings, "grace", job.grace_seconds, 1, kDay_s,
-                       "After SIGTERM: time to finish frames and to hand back the rest");
   add_duration_setting(settings, "lease", job.lease_seconds, 2, kDay_s,
                        "A worker that shows no sign of life for so long is taken for dead, and "
                        "others take its jobs");
@@ -104,6 +91,23 @@ void add_batch_settings(Settings& settings, BatchJob& job) {
   add_duration_setting(settings, "keep-every", job.keep_seconds, 1, kDay_s,
                        "With an output at s3://: time between two times that finished frames and "
                        "chunks are put there; what a worker that dies loses");
+}
+
+void add_batch_settings(Settings& settings, BatchJob& job) {
+  settings
+      .positional(
+          "manifest", job.manifest,
+          "CSV file with a heading, or JSON lines: an item each, with output, inputs such as "
+          "left and right or stereo, and any option of run")
+      .required = true;
+  add_run_settings(settings, job.run);
+  add_job_settings(settings, job);
+  settings.flag("worker", job.worker,
+                "Join the batch in the output folder, or start it: take jobs until none is left");
+  add_task_setting(settings, job.task);
+  settings.flag("retry-failed", job.retry_failed, "Try the items again that have failed");
+  add_duration_setting(settings, "grace", job.grace_seconds, 1, kDay_s,
+                       "After SIGTERM: time to finish frames and to hand back the rest");
   settings.path("metrics", job.metrics, "FILE",
                 "Write counters for Prometheus's textfile collector, after each job");
   settings.set_short_help(

@@ -35,6 +35,9 @@ struct BatchJob {
 /// Binds all fields of `job`: the options of 'vantage batch'.
 void add_batch_settings(Settings& settings, BatchJob& job);
 
+/// Of these, how items become jobs and what workers need: what `submit` hands on.
+void add_job_settings(Settings& settings, BatchJob& job);
+
 /// Throws UsageError for invalid fields, and for options of run that have no sense for all items.
 void check_batch(const BatchJob& job, const Settings& settings);
 

@@ -33,7 +33,8 @@ readonly NEIGHBOUR_PACKAGES=(  # programs and libraries that docs/NEIGHBOURS.md 
 readonly WHEEL_PACKAGES=(patchelf python3-build python3-setuptools python3-venv python3-wheel)
 # shellcheck disable=SC2034
 readonly TEST_PACKAGES=(
-  slurmctld slurmd slurm-client munge xvfb xdotool "${WHEEL_PACKAGES[@]}" "${PYTHON_PACKAGES[@]}"
+  slurmctld slurmd slurm-client munge gridengine-master gridengine-exec gridengine-client
+  python3-yaml python3-botocore xvfb xdotool "${WHEEL_PACKAGES[@]}" "${PYTHON_PACKAGES[@]}"
   "${NEIGHBOUR_PACKAGES[@]}"
 )
 # shellcheck disable=SC2034

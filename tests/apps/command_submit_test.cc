@@ -38,9 +38,13 @@ class SubmitCommand : public DotFramesTest {
     return {"--left",         left_, "--right", right_, "-o", out, "--disparities=0:9",
             "--chunk-frames", "2"};
   }
-  [[nodiscard]] ProcessResult submit(const std::string& out, const Words& more = {}) const {
+  /// Writes the scripts.
+  [[nodiscard]] ProcessResult write(const std::string& out, const Words& more = {}) const {
     const Words submit = words("submit --engine slurm --shards 3");
     return run_vantage(joined(joined(submit, run_options(out)), more));
+  }
+  [[nodiscard]] ProcessResult submit(const std::string& out, const Words& more = {}) const {
+    return write(out, joined({"--go"}, more));
   }
   static std::string slurm(const std::string& out, const std::string& file) {
     return out + "/.vantage/slurm/" + file;
@@ -77,9 +81,9 @@ class SubmitCommand : public DotFramesTest {
 TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
   const fs::path start = fs::current_path();
   fs::current_path(folder_.path());
-  const ProcessResult result = run_vantage(
-      words("submit --left left --right right/*.png -o out --shards 1 --no-submit --mu 0.3 "
-            "--keep-going --disparities=0:9"));
+  const ProcessResult result =
+      run_vantage(words("submit --left left --right right/*.png -o out --shards 1 --mu 0.3 "
+                        "--keep-going --disparities=0:9"));
   fs::current_path(start);
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const std::string out = folder_ / "out";
@@ -92,7 +96,7 @@ TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
             run_vantage({"run", "--left", left_, "--right", right_ + "/*.png", "-o", out, "--mu",
                          "0.3", "--keep-going", "--disparities=0:9", "--print-config"})
                 .out);
-  EXPECT_EQ(run_vantage({"submit", slurm(out, "submit.toml"), "--print-config"}).out,
+  EXPECT_EQ(run_vantage({"submit", "--config", slurm(out, "submit.toml"), "--print-config"}).out,
             read_file(slurm(out, "submit.toml")));
   EXPECT_EQ(calls(), "");
   EXPECT_THAT(result.out, HasSubstr("sbatch --parsable " + slurm(out, "array.sh")));
@@ -101,8 +105,8 @@ TEST_F(SubmitCommand, TheJobFileHoldsTheWholeRunWithAbsolutePaths) {
 TEST_F(SubmitCommand, FewFramesAreDividedAmongAllTasks) {
   const std::string out = folder_ / "out";
   const ProcessResult result =
-      succeeds(run_vantage({"submit", "--engine", "slurm", "--shards", "3", "--no-submit", "--left",
-                            left_, "--right", right_, "--disparities=0:9", "-o", out}));
+      succeeds(run_vantage({"submit", "--engine", "slurm", "--shards", "3", "--left", left_,
+                            "--right", right_, "--disparities=0:9", "-o", out}));
   EXPECT_THAT(result.err, HasSubstr("--chunk-frames is "));
   for (const char* file : {"job.toml", "submit.toml"}) {
     EXPECT_THAT(read_file(slurm(out, file)), Not(HasSubstr("chunk-frames = 50")));
@@ -111,20 +115,20 @@ TEST_F(SubmitCommand, FewFramesAreDividedAmongAllTasks) {
 
 TEST_F(SubmitCommand, OptionsBecomeDirectives) {
   const std::string out = folder_ / "an 'odd' 50% folder";
-  succeeds(submit(
+  succeeds(write(
       out,
-      words("--no-submit --partition long --account film --time 1-12 --cpus 16 --slurm-memory 8G "
+      words("--partition long --account film --time 1-12 --cpus 16 --task-memory 8G "
             "--concurrent 2 --sbatch-option --qos=low --sbatch-option --constraint=avx2 --program "
             "/opt/vantage")));
   const std::string array = read_file(slurm(out, "array.sh"));
   for (const std::string& directive :
-       words("--array=1-3%2 --partition=long --account=film --time=1-12 --cpus-per-task=16 "
-             "--mem=8G --qos=low --constraint=avx2 --signal=B:USR1@120 --requeue "
+       words("--array=1-3%2 --partition=long --account=film --time=1-12:00:00 --cpus-per-task=16 "
+             "--mem=8192M --qos=low --constraint=avx2 --signal=B:USR1@120 --requeue "
              "--open-mode=append")) {
     EXPECT_THAT(array, HasSubstr("\n#SBATCH " + directive + "\n"));
   }
   EXPECT_THAT(array, HasSubstr("an 'odd' 50%% folder/.vantage/slurm/task-%a.log\"\n"));
-  EXPECT_THAT(array, HasSubstr("\nprogram=/opt/vantage\n"));
+  EXPECT_THAT(array, HasSubstr("\ncommand=(/opt/vantage run "));
   const std::string merge = read_file(slurm(out, "merge.sh"));
   EXPECT_THAT(merge, HasSubstr("\n#SBATCH --partition=long\n"));
   EXPECT_THAT(merge, Not(HasSubstr("cpus-per-task")));
@@ -133,10 +137,10 @@ TEST_F(SubmitCommand, OptionsBecomeDirectives) {
                   folder_ / "log"),
             0);
   // A short time limit leaves less time to finish; --threads are processors unless told otherwise.
-  succeeds(submit(out, {"--no-submit", "--time", "4", "--threads", "3"}));
+  succeeds(write(out, {"--time", "4", "--threads", "3"}));
   EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("--signal=B:USR1@60\n"));
   EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("--cpus-per-task=3\n"));
-  EXPECT_THAT(read_file(slurm(out, "array.sh")), HasSubstr("\nthreads=()\n"));
+  EXPECT_THAT(read_file(slurm(out, "array.sh")), Not(HasSubstr("--threads")));
 }
 
 TEST_F(SubmitCommand, SubmitsTheArrayAndTheMergeAfterIt) {
@@ -148,7 +152,7 @@ TEST_F(SubmitCommand, SubmitsTheArrayAndTheMergeAfterIt) {
   const auto jobs = read_json(slurm(out, "submitted.json"));
   EXPECT_EQ(jobs, (nlohmann::json{{"array_job", "41"}, {"merge_job", "42"}}));
   for (const std::string says :
-       {"squeue --array --jobs=41,42", "scancel 41 42", "*.log", "vantage submit --config"}) {
+       {"squeue --array --jobs=41,42", "scancel 41 42", "*.log", "vantage submit --go --config"}) {
     EXPECT_THAT(result.out, HasSubstr(says));
   }
   EXPECT_EQ(submit(out, {"--quiet"}).out, "");
@@ -186,10 +190,9 @@ TEST_F(InputSubmitCommand, WrongUsageIsOneLineAndExit2) {
       {{"--shard", "1/3"}, "--shard cannot be submitted"},
       {{"--dry-run"}, "--dry-run cannot be submitted"},
       {{"--report", "r.json"}, "--report cannot be submitted"},
-      {{"--overwrite", "--no-submit"}, "--overwrite cannot be submitted"},
       {{"--time", "1:2:3:4"}, "--time is '1:2:3:4'"},
       {{"--time", "0"}, "--time is '0'"},
-      {{"--slurm-memory", "8"}, "--slurm-memory is '8'"},
+      {{"--task-memory", "8X"}, "--task-memory is '8X'"},
       {{"--sbatch-option", "qos"}, "--sbatch-option is 'qos'"},
       {{"--sbatch-option", "--a\nb"}, "--sbatch-option is"},
       {{"--partition", "a b"}, "--partition is 'a b'"},
@@ -209,6 +212,7 @@ TEST_F(InputSubmitCommand, WrongUsageIsOneLineAndExit2) {
       run_vantage({"submit", "--engine", "slurm", "--left", left_, "--right", right_, "-o", out});
   EXPECT_EQ(undivided.exit_code, 2);
   EXPECT_EQ(undivided.err, "vantage submit: --shards is missing, expected --shards N\n");
+  expect_one_line(write(out, {"--overwrite"}), 2, "submit", "--overwrite cannot be submitted");
   EXPECT_FALSE(fs::exists(out));
   EXPECT_EQ(submit(folder_ / "a\"b").exit_code, 2);
   EXPECT_EQ(calls(), "");
@@ -260,7 +264,7 @@ TEST_F(SubmitCommand, ATaskEndsAsItsRunDoes) {
                                  slurm(out, "report-2.json") + " --threads 5\n"));
   add_program("vantage", "exit 3");
   EXPECT_EQ(run_task(out), 0);
-  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("frames were skipped"));
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("some of it was skipped"));
   add_program("vantage", "exit 2");
   EXPECT_EQ(run_task(out), 2);
   EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
@@ -297,7 +301,7 @@ TEST_F(SubmitCommand, ATaskContinuesAfterItsTimeLimitIfItGotAnythingDone) {
   add_patient_vantage("/dev/null");
   EXPECT_EQ(run_task(out, send_when_ready("USR1")), 130);
   EXPECT_THAT(calls(), Not(HasSubstr("scontrol")));
-  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("no frame was finished"));
+  EXPECT_THAT(read_file(slurm(out, "task-2.log")), HasSubstr("nothing was finished"));
 }
 
 TEST_F(SubmitCommand, FramesThatDoNotEndInTimeAreGivenUp) {

@@ -241,7 +241,7 @@ TEST_F(ResumedByFolder, NamesNeedNotBeUtf8) {
   EXPECT_THAT(read_file(config), HasSubstr("x\\xff/left"));
   succeeds(run_vantage({"run", "--config", config, "--resume"}));
 
-  succeeds(run_vantage(joined({"submit", "--no-submit", "--shards", "1"}, input)));
+  succeeds(run_vantage(joined({"submit", "--shards", "1"}, input)));
   succeeds(run_vantage({"run", "--config", place + "/out/.vantage/slurm/job.toml", "--resume"}));
 
   const std::string scene = folder_ / "scene";

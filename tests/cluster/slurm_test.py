@@ -140,7 +140,7 @@ class SlurmTest(unittest.TestCase):
 
     def submit(self, folder, *more):
         return vantage("submit", "--engine", "slurm", *self.settings(), "-o", folder,
-                       "--shards", TASKS, *more, environment=self.cluster.environment)
+                       "--shards", TASKS, "--go", *more, environment=self.cluster.environment)
 
     def expect_reference(self, run):
         expected, made = results(self.reference), results(run.folder)
@@ -220,7 +220,7 @@ class SlurmTest(unittest.TestCase):
         self.assertEqual(run.job(jobs["merge_job"])["JobState"], "CANCELLED")
         bad_frame.write_bytes(content)
         # Of the submission before, but for the input.
-        again = ["submit", "--config", run.slurm_folder / "submit.toml"]
+        again = ["submit", "--go", "--config", run.slurm_folder / "submit.toml"]
         result = vantage(*again, environment=self.cluster.environment)
         self.assertEqual(result.returncode, 1)
         self.assertIn("different run", result.stderr)
@@ -228,6 +228,38 @@ class SlurmTest(unittest.TestCase):
         self.assertNotEqual(run.jobs(), jobs)
         run.wait_for_end()
         self.expect_reference(run)
+
+    def test_the_items_of_a_manifest(self):
+        manifest = self.folder / "films.csv"
+        pairs = "".join(f"pair{i},scene/left/{i:06}.png,scene/right/{i:06}.png\n" for i in range(2))
+        manifest.write_text(f"output,left,right\nfilm,scene/left,scene/right\n{pairs}", encoding="utf-8")
+        options = [manifest, *MATCHING, "--chunk-frames", CHUNK_FRAMES]
+        must_succeed(vantage("batch", *options, "-o", self.folder / "one process"))
+        out = self.folder / "a task each"
+        must_succeed(vantage("submit", "--engine", "slurm", "--go", *options, "-o", out, "--tasks", TASKS,
+                             "--job-time", "1s", "--cpus", 1, "--task-memory", "400M", "--lease", "3s",
+                             environment=self.cluster.environment))
+        killed = []
+
+        def workers():
+            of_task = set(processes_with("SLURM_ARRAY_TASK_ID=2"))
+            return [process for process in of_task & set(processes_with(self.cluster.marker))
+                    if command_line(process)[1:2] == ["batch"]]
+
+        def at_end():
+            if not killed:
+                killed.extend(workers())
+                kill(killed)
+            return not self.cluster.slurm("squeue", "--noheader", "--array")
+        wait_until(at_end, JOB_SECONDS, "the end of all tasks")
+        logs = {file.name: file.read_text(encoding="utf-8")
+                for file in (out / ".vantage" / "submit").glob("task-*.log")}
+        self.assertIn("failed with exit code 137, is tried again", logs["task-2.log"])
+        self.assertEqual({text.splitlines()[-1].split(": ")[-1] for text in logs.values()}, {"done"}, logs)
+        expected, made = results(self.folder / "one process"), results(out)
+        for of_times in (expected, made):
+            of_times.pop("items.jsonl")
+        self.assertTrue(made == expected, logs)
 
     def test_what_slurm_refuses_is_one_line(self):
         result = self.submit(self.folder / "refused", "--partition", "nowhere")

@@ -1,11 +1,8 @@
-#include "apps/submit/submit_job.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <optional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,10 +14,12 @@
 #include "apps/run/run_session.h"
 #include "apps/run/stream_run.h"
 #include "apps/settings/command_line.h"
+#include "apps/submit/slurm_engine.h"
+#include "apps/submit/submit_job.h"
+#include "apps/submit/submit_program.h"
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/json_text.h"
-#include "engine/io/files/remote_files.h"
 #include "engine/options/setting_value.h"
 #include "engine/quoted_text.h"
 #include "engine/sequence/journal/leftovers.h"
@@ -45,43 +44,20 @@ void check(const SubmitJob& job) {
       throw UsageError(fmt::format("--{} cannot be submitted: {}", option, instead));
     }
   };
-  refuse_if(job.run.shard.has_value(), "shard",
+  refuse_if(job.batch.run.shard.has_value(), "shard",
             "each task has its own; --shards is the number of tasks");
-  if (job.run.input.is_stream()) {
+  if (job.batch.run.input.is_stream()) {
     throw UsageError("a stream cannot be submitted: tasks read files, expected one");
   }
-  refuse_if(writes_stream(job.run), "output -", "tasks write a folder, expected one");
-  refuse_if(job.run.show, "show", "tasks have no screen");
-  refuse_if(job.run.dry_run, "dry-run", "'vantage run' prints the plan, --no-submit the scripts");
-  refuse_if(!job.run.common.report.empty(), "report",
+  refuse_if(writes_stream(job.batch.run), "output -", "tasks write a folder, expected one");
+  refuse_if(job.batch.run.show, "show", "tasks have no screen");
+  refuse_if(job.batch.run.dry_run, "dry-run", "'vantage run' prints the plan");
+  refuse_if(!job.batch.run.common.report.empty(), "report",
             "each task writes its own: DIR/.vantage/slurm/report-1.json and so on");
-  refuse_if(job.no_submit && (job.run.overwrite || job.run.force),
-            job.run.force ? "force" : "overwrite", "--no-submit does not change the folder");
-  job.slurm.validate();
-}
-
-/// Paths become absolute because tasks start in another folder.
-void make_paths_absolute(SubmitJob& job) {
-  PairSourceOptions& input = job.run.input;
-  std::vector<std::string*> paths = {&input.left,
-                                     &input.right,
-                                     &input.stereo,
-                                     &input.pairs,
-                                     &input.sequence,
-                                     &job.run.calibration,
-                                     &job.run.unrectified,
-                                     &job.run.poses,
-                                     &job.run.views.poses.file,
-                                     &job.run.views.path.file,
-                                     &job.run.output,
-                                     &job.slurm.program};
-  for (std::string& source : input.more) {
-    paths.push_back(&source);
-  }
-  for (std::string* path : paths) {
-    if (!path->empty() && !is_address(*path)) {
-      *path = fs::absolute(*path).lexically_normal().string();
-    }
+  refuse_if(!job.options.go && (job.batch.run.overwrite || job.batch.run.force),
+            job.batch.run.force ? "force" : "overwrite", "the folder is not changed without --go");
+  if (job.options.shards == 0) {
+    throw UsageError("--shards is missing, expected --shards N");
   }
 }
 
@@ -103,47 +79,32 @@ int chunk_count(const FrameSelection& selection) {
                               frames.first / selection.chunk_frames + 1;
 }
 
-void require_work_for_all(const SlurmOptions& slurm, const FrameSelection& selection) {
+void require_work_for_all(int shards, const FrameSelection& selection) {
   const FrameRange frames = selection.all();
   const int chunks = chunk_count(selection);
-  if (slurm.shards > chunks) {
+  if (shards > chunks) {
     throw UsageError(fmt::format(
         "--shards is {}, expected at most {}: there are {} frames in chunks of {} (--chunk-frames)",
-        slurm.shards, chunks, frames.count(), selection.chunk_frames));
+        shards, chunks, frames.count(), selection.chunk_frames));
   }
 }
 
 /// Unless --chunk-frames is given, makes chunks small enough for every task to have one.
 void divide_for_all(const Settings& settings, SubmitJob& job) {
   FrameSelection selection;
-  const std::unique_ptr<PairSource> pairs = open_pair_source(job.run.input);
+  const std::unique_ptr<PairSource> pairs = open_pair_source(job.batch.run.input);
   selection.frame_count = pairs->pair_count();
-  selection.frames = selected_pairs(job.run, *pairs);
-  selection.chunk_frames = job.run.sequence.chunk_frames;
-  const int share = selection.all().empty() ? 0 : selection.all().count() / job.slurm.shards;
-  if (settings.is_set("chunk-frames") || share < 1 || chunk_count(selection) >= job.slurm.shards) {
+  selection.frames = selected_pairs(job.batch.run, *pairs);
+  selection.chunk_frames = job.batch.run.sequence.chunk_frames;
+  const int share = selection.all().empty() ? 0 : selection.all().count() / job.options.shards;
+  if (settings.is_set("chunk-frames") || share < 1 ||
+      chunk_count(selection) >= job.options.shards) {
     return;
   }
-  job.run.sequence.chunk_frames = share;
-  if (!job.run.common.quiet) {
+  job.batch.run.sequence.chunk_frames = share;
+  if (!job.batch.run.common.quiet) {
     tell("submit: --chunk-frames is {}, so that all {} tasks have frames\n", share,
-         job.slurm.shards);
-  }
-}
-
-/// The one-line message of a Slurm program that failed.
-std::string message_of(const ProgramResult& result) {
-  std::string text = result.err.empty() ? result.out : result.err;
-  std::ranges::replace(text, '\n', ' ');
-  text.erase(text.find_last_not_of(' ') + 1);
-  return text.empty() ? fmt::format("exit code {}", result.exit_code) : text;
-}
-
-void require_slurm() {
-  if (!program_exists("sbatch")) {
-    throw Error(
-        "sbatch is not in the PATH, expected Slurm's programs (Debian: slurm-client); --no-submit "
-        "only writes the job scripts");
+         job.options.shards);
   }
 }
 
@@ -174,15 +135,11 @@ std::string submit(const std::vector<std::string>& options, const fs::path& scri
   std::vector<std::string> command = {"sbatch", "--parsable"};
   command.insert(command.end(), options.begin(), options.end());
   command.push_back(script.string());
-  const ProgramResult result = run_program(command);
-  if (result.exit_code != 0) {
-    throw Error(fmt::format("{}: refused by Slurm: {}", script.string(), message_of(result)));
-  }
-  std::string job = result.out.substr(0, result.out.find_first_of(";\n"));
+  const std::string answer = output_of_submission(command);
+  std::string job = answer.substr(0, answer.find_first_of(";\n"));
   if (job.empty() ||
       !std::ranges::all_of(job, [](char letter) { return letter >= '0' && letter <= '9'; })) {
-    throw Error(
-        fmt::format("sbatch printed '{}', expected a job number", quotable(message_of(result))));
+    throw Error(fmt::format("sbatch printed '{}', expected a job number", quotable(answer)));
   }
   return job;
 }
@@ -198,13 +155,35 @@ void prepare_journal(const RunJob& run, const RunSession& session, JournalOpenin
   }
 }
 
-SlurmRun to_slurm_run(const SubmitJob& job) {
+ArrayJob to_array_job(const SubmitJob& job, const fs::path& folder) {
+  ArrayJob array = job.options.requests();
+  array.name = job_name(job.batch.run.output);
+  array.folder = folder;
+  array.tasks = job.options.shards;
+  if (!array.cores) {
+    array.cores = job.batch.run.common.execution.threads;
+  }
+  return array;
+}
+
+/// Task i makes shard i, with as many threads as it has processors.
+TaskWork work_of_shards(const SubmitJob& job, const std::string& program) {
   RunJob all_shards;
-  all_shards.frames = job.run.frames;
-  return {.folder = job.run.output,
-          .program = job.slurm.program.empty() ? path_of_this_program() : job.slurm.program,
-          .threads_from_slurm = !job.run.common.execution.threads,
-          .part_prefix = job.run.frames ? RunSession::part_name(all_shards) + "-" : ""};
+  all_shards.frames = job.batch.run.frames;
+  const std::string part_prefix =
+      job.batch.run.frames ? RunSession::part_name(all_shards) + "-" : "";
+  std::string command = shell_word(program) +
+                        " run \"$folder/job.toml\" --shard \"$task/$tasks\" --resume --progress "
+                        "plain --report \"$folder/report-$task.json\"";
+  if (!job.batch.run.common.execution.threads) {
+    command += " --threads \"${SLURM_CPUS_PER_TASK:-${SLURM_CPUS_ON_NODE:-1}}\"";
+  }
+  return {.comment = fmt::format("Task i makes shard i/{} of a run.", job.options.shards),
+          .command = command,
+          .finished_parts =
+              fmt::format("$folder/../frames-{}$task-of-$tasks.jsonl", shell_word(part_prefix)),
+          .part_line = "{",
+          .skipped_exit_code = kExitDone};  // the merge starts after 0 only
 }
 
 std::vector<std::string> dependency_on(const std::string& array) {
@@ -232,55 +211,63 @@ void print_how_to_follow(const fs::path& folder, const SubmittedJobs& jobs, cons
       "  logs     tail -n +1 -F {}/*.log\n"
       "  history  sacct --jobs={},{}\n"
       "  cancel   scancel {} {}\n"
-      "  again    vantage submit --config {}\n",
-      jobs.array, job.slurm.shards, jobs.merge, job.run.output, jobs.array, jobs.merge,
+      "  again    vantage submit --go --config {}\n",
+      jobs.array, job.options.shards, jobs.merge, job.batch.run.output, jobs.array, jobs.merge,
       shell_word(folder.string()), jobs.array, jobs.merge, jobs.array, jobs.merge,
       shell_word((folder / "submit.toml").string()));
 }
 
 void print_how_to_submit(const fs::path& folder) {
-  fmt::print("not submitted; submit with:\n  job=$(sbatch --parsable {})\n  sbatch {} {}\n",
-             shell_word((folder / "array.sh").string()), fmt::join(dependency_on("$job"), " "),
-             shell_word((folder / "merge.sh").string()));
+  fmt::print(
+      "not submitted; submit with --go, or:\n  job=$(sbatch --parsable {})\n  sbatch {} {}\n",
+      shell_word((folder / "array.sh").string()), fmt::join(dependency_on("$job"), " "),
+      shell_word((folder / "merge.sh").string()));
+}
+
+void write_scripts(const SubmitJob& job, const fs::path& folder) {
+  const std::string program =
+      job.options.program.empty() ? path_of_this_program() : job.options.program;
+  const ArrayJob array = to_array_job(job, folder);
+  // For a partial run, merge must ignore frames outside the selection.
+  const std::string merge =
+      fmt::format("exec {} merge{} {}", shell_word(program),
+                  job.batch.run.frames ? " --partial" : "", shell_word(job.batch.run.output));
+  write_text_file(folder / "array.sh",
+                  slurm_array_script(array, job.options, work_of_shards(job, program)));
+  write_text_file(folder / "merge.sh", slurm_job_script(array, job.options, "merge", merge));
 }
 
 }  // namespace
 
-int run_submit(SubmitJob& job, const Settings& settings) {
+int submit_divided_run(SubmitJob& job, const Settings& settings) {
   check(job);
-  complete(job.run, settings);
-  make_paths_absolute(job);
+  complete(job.batch.run, settings);
   divide_for_all(settings, job);
-  require_folder_for_scripts(job.run.output);
-  const fs::path folder = slurm_folder(job.run.output);
-  const JournalOpening opening = take_opening(job.run);
-  const bool no_submit = std::exchange(job.no_submit, false);
-  const bool quiet = std::exchange(job.run.common.quiet, false);
+  const fs::path folder = slurm_folder(job.batch.run.output);
+  require_folder_for_slurm(folder);
+  const JournalOpening opening = take_opening(job.batch.run);
+  const bool go = std::exchange(job.options.go, false);
+  const bool quiet = std::exchange(job.batch.run.common.quiet, false);
   // The settings of the run alone, bound to the same fields.
   Settings run_settings("run", "");
-  add_run_settings(run_settings, job.run);
+  add_run_settings(run_settings, job.batch.run);
   const std::string submit_file = to_toml(settings);
   const std::string job_file = to_toml(run_settings);
 
   RunReport report(settings.command(), settings.values());
-  force_instruction_set(job.run.common.isa);
-  const RunSession session = open_run(job.run, run_settings, report);
-  require_work_for_all(job.slurm, session.selection);
-  if (!no_submit) {
-    require_slurm();
+  force_instruction_set(job.batch.run.common.isa);
+  const RunSession session = open_run(job.batch.run, run_settings, report);
+  require_work_for_all(job.options.shards, session.selection);
+  if (go) {
+    require_submitting_program("sbatch");
     require_none_in_queue(folder);
-    prepare_journal(job.run, session, opening);
+    prepare_journal(job.batch.run, session, opening);
   }
-  if (!job.slurm.cpus) {
-    job.slurm.cpus = job.run.common.execution.threads;
-  }
-  const SlurmRun run = to_slurm_run(job);
   make_folder(folder);
   write_text_file(folder / "submit.toml", submit_file);
   write_text_file(folder / "job.toml", job_file);
-  write_text_file(folder / "array.sh", array_script(job.slurm, run));
-  write_text_file(folder / "merge.sh", merge_script(job.slurm, run));
-  if (no_submit) {
+  write_scripts(job, folder);
+  if (!go) {
     print_how_to_submit(folder);
     return kExitDone;
   }
