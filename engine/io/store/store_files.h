@@ -2,10 +2,8 @@
 
 #include <functional>
 #include <memory>
-#include <string>
 
 #include "engine/io/files/remote_files.h"
-#include "engine/io/store/object_store.h"
 
 namespace vantage {
 
