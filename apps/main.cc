@@ -51,7 +51,8 @@ std::string help() {
   }
   return text +
          fmt::format(
-             "\n'vantage help COMMAND' shows the most used options of a command, 'vantage COMMAND "
+             "\nInputs are files, or addresses: s3://BUCKET/KEY, https://HOST/PATH.\n"
+             "'vantage help COMMAND' shows the most used options of a command, 'vantage COMMAND "
              "--help-all' all.\n'vantage --version' prints the version, 'vantage --version "
              "--verbose' what a bug report needs.\nExit codes: {}\n",
              kExitCodes);

@@ -168,10 +168,10 @@ SceneVertex load_vertex(const fs::path& folder, const StoredScene& scene, int ve
   const StoredImage& stored = scene.images.at(static_cast<std::size_t>(vertex));
   const fs::path image_file = joined_path(folder, stored.file);
   if (!is_there(image_file)) {
-    throw Error(
-        fmt::format("{} is missing, expected image {} of the scene; build the scene again "
-                    "after moving images, or with `copy-images` to keep copies in the folder",
-                    image_file.lexically_normal().string(), vertex));
+    throw Error(fmt::format(
+        "{} is missing, expected image {} of the scene; build the scene again "
+        "after moving images, or with `copy-images` to keep copies in the folder",
+        (is_address(image_file) ? image_file : image_file.lexically_normal()).string(), vertex));
   }
   if (content_of_file(image_file) != stored.content) {
     throw Error(

@@ -36,7 +36,7 @@ class Faults:
         self.busy_share = 0.0  # of requests that are answered with 503
         self.retry_after = None  # seconds that those ask for
         self.cut_share = 0.0  # of bodies that end early
-        self.silent = False  # nothing is answered
+        self.silent = None  # paths with this text are not answered
         self.slow_bytes_per_s = None
         self.lost_answers = 0  # so many puts are done and not answered
         self.no_ranges = False
@@ -173,7 +173,7 @@ class RequestHandler(BaseHTTPRequestHandler):
         with store.lock:
             store.requests.append((self.command, self.path, dict(self.headers)))
             is_busy = faults.random.random() < faults.busy_share
-        if faults.silent:
+        if faults.silent is not None and faults.silent in self.path:
             store.ending.wait(60)
             self.close_connection = True
             return

@@ -43,7 +43,12 @@ AtomicFile::AtomicFile(const fs::path& path) : given_path_(path), final_path_(th
   }
   if (is_address(path)) {
     std::error_code error;
-    create_temporary(fs::temp_directory_path(error));
+    const fs::path temporary = fs::temp_directory_path(error);
+    if (error) {
+      throw Error(fmt::format("cannot write {}: TMPDIR is no folder, expected one for its file",
+                              path.string()));
+    }
+    create_temporary(temporary);
     return;
   }
   std::error_code ignored;

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/io/files/file_bytes.h"
 #include "engine/io/files/json_text.h"
+#include "engine/io/store/store_answers.h"
 
 namespace vantage {
 namespace {
@@ -22,6 +23,7 @@ using std::chrono::system_clock;
 /// Answers of services near by come in milliseconds; elsewhere than at AWS there is none.
 constexpr std::chrono::milliseconds kServiceLimit{1000};
 constexpr std::chrono::minutes kRenewedBefore{5};
+constexpr const char* kService = "the service of AWS's keys";
 
 std::string variable(const char* name, const std::string& otherwise = "") {
   const char* const value = std::getenv(name);
@@ -129,6 +131,9 @@ std::optional<AwsCredentials::Found> AwsCredentials::find() {
   if (!of_variables.id.empty() && !of_variables.secret.empty()) {
     return Found{of_variables, {}};
   }
+  if (std::optional<Found> found = of_web_identity()) {
+    return found;
+  }
   std::map<std::string, std::string> profile = profile_in_use();
   const AwsKeys of_profile{profile["aws_access_key_id"], profile["aws_secret_access_key"],
                            profile["aws_session_token"]};
@@ -137,6 +142,30 @@ std::optional<AwsCredentials::Found> AwsCredentials::find() {
   }
   std::optional<Found> found = of_container();
   return found ? found : of_machine();
+}
+
+std::optional<AwsCredentials::Found> AwsCredentials::of_web_identity() {
+  const std::string role = variable("AWS_ROLE_ARN");
+  const std::string file = variable("AWS_WEB_IDENTITY_TOKEN_FILE");
+  if (role.empty() || file.empty()) {
+    return std::nullopt;
+  }
+  const std::string region = variable("AWS_REGION", variable("AWS_DEFAULT_REGION", "us-east-1"));
+  const std::string service =
+      variable("AWS_ENDPOINT_URL_STS", fmt::format("https://sts.{}.amazonaws.com", region));
+  const std::string query =
+      encoded_query({{"Action", "AssumeRoleWithWebIdentity"},
+                     {"RoleArn", role},
+                     {"RoleSessionName", variable("AWS_ROLE_SESSION_NAME", "vantage")},
+                     {"Version", "2011-06-15"},
+                     {"WebIdentityToken", std::string(trimmed(read_file_text(file)))}});
+  const HttpAnswer answer = client_.send(
+      kService, [&] { return HttpRequest{.url = fmt::format("{}/?{}", service, query)}; });
+  const std::string xml = answer.text();
+  return checked({{element_of(xml, "AccessKeyId"), element_of(xml, "SecretAccessKey"),
+                   element_of(xml, "SessionToken")},
+                  time_of(element_of(xml, "Expiration"))},
+                 answer.status);
 }
 
 std::optional<AwsCredentials::Found> AwsCredentials::of_container() {
@@ -183,20 +212,21 @@ std::optional<AwsCredentials::Found> AwsCredentials::of_machine() {
 }
 
 AwsCredentials::Found AwsCredentials::fetch(const HttpRequest& request) {
-  constexpr const char* kName = "the service of AWS's keys";
   const HttpAnswer answer = client_.ask_service(request, kServiceLimit);
-  if (answer.status != 200) {
-    throw Error(fmt::format("{} answers {}", kName, answer.status));
-  }
-  const nlohmann::ordered_json json = parse_json(answer.text(), kName);
+  const nlohmann::ordered_json json =
+      answer.status == 200 ? parse_json(answer.text(), kService) : nlohmann::ordered_json();
   const auto text = [&](const char* name) {
     const auto found = json.find(name);
     return found != json.end() && found->is_string() ? found->get<std::string>() : "";
   };
-  Found found{{text("AccessKeyId"), text("SecretAccessKey"), text("Token")},
-              time_of(text("Expiration"))};
+  return checked(
+      {{text("AccessKeyId"), text("SecretAccessKey"), text("Token")}, time_of(text("Expiration"))},
+      answer.status);
+}
+
+AwsCredentials::Found AwsCredentials::checked(Found found, int status) {
   if (found.keys.id.empty() || found.keys.secret.empty()) {
-    throw Error(fmt::format("{} tells no keys", kName));
+    throw Error(fmt::format("{} answers {}, expected keys", kService, status));
   }
   return found;
 }

@@ -26,7 +26,8 @@ struct AwsSettings {
 AwsSettings aws_settings();
 
 /// The keys of this process, from the first of these that has some: AWS_ACCESS_KEY_ID and its
-/// companions; the profile AWS_PROFILE of ~/.aws/credentials and ~/.aws/config; the service of a
+/// companions; the role AWS_ROLE_ARN, for the token in AWS_WEB_IDENTITY_TOKEN_FILE (Kubernetes at
+/// AWS); the profile AWS_PROFILE of ~/.aws/credentials and ~/.aws/config; the service of a
 /// container; that of a machine at AWS (IMDSv2). Those that expire are fetched again 5 minutes
 /// before. Thread rule: may be used concurrently.
 class AwsCredentials {
@@ -43,9 +44,12 @@ class AwsCredentials {
     std::optional<std::chrono::system_clock::time_point> expires;
   };
   std::optional<Found> find();
+  std::optional<Found> of_web_identity();
   std::optional<Found> of_container();
   std::optional<Found> of_machine();
   Found fetch(const HttpRequest& request);
+  /// Throws Error unless there are keys in an answer of this `status`.
+  static Found checked(Found found, int status);
 
   HttpClient& client_;
   std::mutex mutex_;

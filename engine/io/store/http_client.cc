@@ -342,7 +342,7 @@ HttpAnswer HttpClient::ask_service(const HttpRequest& request, milliseconds limi
     std::rethrow_exception(transfer.problem);
   }
   if (code != CURLE_OK) {
-    throw Error(curl().curl_easy_strerror(code));
+    throw Error(fmt::format("cannot reach {}: {}", request.url, curl().curl_easy_strerror(code)));
   }
   return std::move(transfer.answer);
 }
