@@ -11,8 +11,11 @@
 
 #include "engine/error.h"
 #include "engine/io/store/address.h"
+#include "engine/io/store/aws_credentials.h"
 #include "engine/io/store/block_reader.h"
-#include "engine/io/store/stores.h"
+#include "engine/io/store/http_client.h"
+#include "engine/io/store/http_store.h"
+#include "engine/io/store/s3_store.h"
 
 namespace vantage {
 namespace {
@@ -36,7 +39,7 @@ class OpenedObject final : public RandomAccessFile {
 
 class StoreFiles final : public RemoteFiles {
  public:
-  explicit StoreFiles(std::function<bool()> is_interrupted) : stores_(std::move(is_interrupted)) {}
+  explicit StoreFiles(std::function<bool()> is_interrupted) : client_(std::move(is_interrupted)) {}
 
   std::optional<FileStatus> status(const std::string& address) override {
     const Address place = parse_address(address);
@@ -52,7 +55,7 @@ class StoreFiles final : public RemoteFiles {
   std::vector<std::uint8_t> read(const std::string& address, std::uint64_t max_bytes) override {
     const Address place = parse_address(address);
     const std::optional<ObjectInfo> before = known(place);
-    ObjectPart part = stores_.of(place)->read(place.key, {}, before ? before->etag : "", max_bytes);
+    ObjectPart part = store_of(place)->read(place.key, {}, before ? before->etag : "", max_bytes);
     note(place, part.info);
     return std::move(part.bytes);
   }
@@ -70,8 +73,8 @@ class StoreFiles final : public RemoteFiles {
     if (opened != readers_.end() && opened->second->info().etag == info->etag) {
       readers_.splice(readers_.begin(), readers_, opened);
     } else {
-      readers_.emplace_front(name, std::make_shared<BlockReader>(stores_.of(place), place.key,
-                                                                 *info, stores_.client()));
+      readers_.emplace_front(
+          name, std::make_shared<BlockReader>(store_in_lock(place), place.key, *info, client_));
       readers_.resize(std::min(readers_.size(), kKeptReaders));
     }
     return std::make_unique<OpenedObject>(readers_.front().second);
@@ -81,7 +84,7 @@ class StoreFiles final : public RemoteFiles {
     Address place = parse_address(folder);
     place.key = prefix_of(place);
     std::vector<std::string> names;
-    stores_.of(place)->list(place.key, true, [&](const ListedObject& object) {
+    store_of(place)->list(place.key, true, [&](const ListedObject& object) {
       if (!object.is_folder && object.key.size() > place.key.size()) {
         names.push_back(object.key.substr(place.key.size()));
         note({place.is_s3, place.place, object.key}, object.info);
@@ -96,14 +99,14 @@ class StoreFiles final : public RemoteFiles {
     if (place.key.empty() || place.key.ends_with('/')) {
       throw UsageError(fmt::format("{}: names no object, expected s3://BUCKET/KEY", address));
     }
-    stores_.of(place)->check_writable(place.key);
+    store_of(place)->check_writable(place.key);
   }
 
   bool write(const std::string& address, const std::filesystem::path& file,
              bool if_absent) override {
     const Address place = parse_address(address);
     const bool is_written =
-        stores_.of(place)->put_file(place.key, file, {.if_absent = if_absent}).has_value();
+        store_of(place)->put_file(place.key, file, {.if_absent = if_absent}).has_value();
     const std::scoped_lock lock(mutex_);
     known_.erase(place.with_key(place.key));
     return is_written;
@@ -121,11 +124,26 @@ class StoreFiles final : public RemoteFiles {
 
   bool is_prefix(const Address& place) {
     bool is_prefix = false;
-    stores_.of(place)->list(prefix_of(place), true, [&](const ListedObject&) {
+    store_of(place)->list(prefix_of(place), true, [&](const ListedObject&) {
       is_prefix = true;
       return false;
     });
     return is_prefix;
+  }
+
+  std::shared_ptr<ObjectStore> store_of(const Address& place) {
+    const std::scoped_lock lock(mutex_);
+    return store_in_lock(place);
+  }
+
+  std::shared_ptr<ObjectStore> store_in_lock(const Address& place) {
+    std::shared_ptr<ObjectStore>& store = stores_[place.with_key("")];
+    if (store == nullptr && place.is_s3) {
+      store = std::make_shared<S3Store>(place.place, aws_settings(), client_, credentials_);
+    } else if (store == nullptr) {
+      store = std::make_shared<HttpStore>(place.place, client_);
+    }
+    return store;
   }
 
   std::optional<ObjectInfo> known(const Address& place) {
@@ -143,14 +161,16 @@ class StoreFiles final : public RemoteFiles {
 
   std::optional<ObjectInfo> info_of_object(const Address& place) {
     std::optional<ObjectInfo> info = known(place);
-    if (!info && (info = stores_.of(place)->info(place.key))) {
+    if (!info && (info = store_of(place)->info(place.key))) {
       note(place, *info);
     }
     return info;
   }
 
-  Stores stores_;
+  HttpClient client_;
+  AwsCredentials credentials_{client_};
   std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<ObjectStore>> stores_;
   std::map<std::string, ObjectInfo> known_;
   std::list<std::pair<std::string, std::shared_ptr<BlockReader>>> readers_;
 };
