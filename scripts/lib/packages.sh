@@ -23,7 +23,7 @@ readonly FUZZ_PACKAGES=(clang libclang-rt-14-dev libomp-dev)
 
 # What some tests need beside that; without these they are skipped.
 # shellcheck disable=SC2034
-readonly PYTHON_PACKAGES=(mypy python3-jedi python3-nbclient python3-ipykernel)
+readonly PYTHON_PACKAGES=(mypy python3-jedi python3-nbclient python3-ipykernel python3-distributed)
 # shellcheck disable=SC2034
 readonly NEIGHBOUR_PACKAGES=(  # programs and libraries that docs/NEIGHBOURS.md is about
   gstreamer1.0-tools gstreamer1.0-plugins-base gstreamer1.0-plugins-good
