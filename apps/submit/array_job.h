@@ -20,7 +20,7 @@ struct ArrayJob {
   std::optional<std::size_t> memory_bytes;  ///< of a task; of a manifest never empty
   std::optional<long> time_limit_s;         ///< of a task
   int drain_s = 0;                          ///< from the signal to end until a task is killed
-  int retries = 0;                          ///< further attempts after a task has failed
+  int retries = 2;                          ///< further attempts after a task has failed
 };
 
 /// What an engine takes: files, which belong in ArrayJob::folder, and the commands, as words, that

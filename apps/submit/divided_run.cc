@@ -156,7 +156,8 @@ void prepare_journal(const RunJob& run, const RunSession& session, JournalOpenin
 }
 
 ArrayJob to_array_job(const SubmitJob& job, const fs::path& folder) {
-  ArrayJob array = job.options.requests();
+  ArrayJob array = job.options.requests;
+  array.drain_s = job.options.drain_s_or_default();
   array.name = job_name(job.batch.run.output);
   array.folder = folder;
   array.tasks = job.options.shards;

@@ -9,17 +9,17 @@
 
 namespace vantage::apps {
 
-/// An engine that runs the tasks of a manifest.
+/// An engine that runs the tasks of a manifest. Limits that an engine does not have are usual ones.
 struct EngineEntry {
   BatchEngine engine;
   std::string_view name;
   std::string_view program;  ///< that submits; empty: none, tasks are children of this process
-  bool shares_files;         ///< tasks see the paths of this machine
-  int max_tasks;
-  int max_retries;
-  int drain_s;  ///< time that a task has to end, unless the user says otherwise
-  std::vector<std::string_view> options;   ///< that not all engines read
-  std::vector<std::string_view> required;  ///< of these
+  bool shares_files = true;  ///< tasks see the paths of this machine
+  int max_tasks = 100000;
+  int max_retries = 1000;
+  int drain_s = 120;  ///< time that a task has to end, unless the user says otherwise
+  std::vector<std::string_view> options;        ///< that not all engines read
+  std::vector<std::string_view> required = {};  ///< of these
   /// Pure. Throws UsageError for what the engine does not take.
   Submission (*write)(const ArrayJob& job, const SubmitOptions& options);
 };

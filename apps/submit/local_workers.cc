@@ -17,10 +17,12 @@
 namespace vantage::apps {
 namespace {
 
-/// Exit code of a worker that prints to its log.
+/// Exit code of a worker that prints to its log. It keeps the pipe of run_program(), which looks at
+/// `stop` for as long as that is open.
 int run_worker(const std::vector<std::string>& command, const std::filesystem::path& log,
                const std::atomic<bool>& stop) {
-  std::vector<std::string> logged = {"/bin/sh", "-c", R"(exec "$@" >>"$0" 2>&1)", log.string()};
+  std::vector<std::string> logged = {"/bin/sh", "-c", R"(exec 3>&1; exec "$@" >>"$0" 2>&1)",
+                                     log.string()};
   logged.insert(logged.end(), command.begin(), command.end());
   const int code = run_program(logged, &stop).exit_code;
   if (code != 0) {

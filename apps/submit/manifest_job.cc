@@ -125,7 +125,8 @@ int hand_over(const ArrayJob& array, const Submission& submission, const EngineE
 int submit_manifest(SubmitJob& job, const Settings& settings) {
   check_manifest_job(job, settings);
   const EngineEntry& engine = engine_entry(job.options.engine);
-  ArrayJob array = job.options.requests();
+  ArrayJob array = job.options.requests;
+  array.drain_s = job.options.drain_s_or_default();
   array.name = job_name(job.batch.run.output);
   array.folder = job_folder(job, engine, array.name);
   plan_requests(job, settings, array);

@@ -111,18 +111,18 @@ void add_task_settings(Settings& settings, SubmitOptions& options) {
   shards.get = [&options] {
     return options.shards == 0 ? SettingValue() : SettingValue(options.shards);
   };
-  settings.integer("concurrent", options.concurrent, "N",
+  settings.integer("concurrent", options.requests.concurrent, "N",
                    "Maximum number of tasks at a time; auto: all");
-  settings.integer("cpus", options.cpus, "N",
+  settings.integer("cpus", options.requests.cores, "N",
                    "Processors per task; auto: from the manifest; of one run: --threads, else the "
                    "default of the cluster");
-  add_size_setting(settings, "task-memory", options.memory_bytes,
+  add_size_setting(settings, "task-memory", options.requests.memory_bytes,
                    "Memory per task, such as 8G; auto: from the manifest, else of the engine");
-  add_time_setting(settings, options.time_limit_s);
+  add_time_setting(settings, options.requests.time_limit_s);
   settings.integer("drain-time", options.drain_s, "SECONDS",
                    "Time in which a task that has to end finishes its work or hands it back; auto: "
                    "120, at most a quarter of the time limit");
-  settings.integer("retries", options.retries, "N",
+  settings.integer("retries", options.requests.retries, "N",
                    "Number of further attempts after a task has failed");
   settings.path("program", options.program, "FILE",
                 "Path to the vantage program where tasks run; default: this one, or vantage in an "
@@ -160,11 +160,11 @@ void SubmitOptions::validate() const {
     require_range("--shards", shards, 1, kMaxTasks);
   }
   require_range("--tasks", tasks.value_or(1), 1, engine_entry(engine).max_tasks);
-  require_range("--retries", retries, 0, engine_entry(engine).max_retries);
-  require_range("--cpus", cpus.value_or(1), 1, kMaxCpus);
-  require_range("--concurrent", concurrent.value_or(1), 1, kMaxTasks);
+  require_range("--retries", requests.retries, 0, engine_entry(engine).max_retries);
+  require_range("--cpus", requests.cores.value_or(1), 1, kMaxCpus);
+  require_range("--concurrent", requests.concurrent.value_or(1), 1, kMaxTasks);
   require_range("--drain-time", drain_s_or_default(), 1,
-                static_cast<int>(std::min(kDay_s, time_limit_s.value_or(kDay_s) - 1)));
+                static_cast<int>(std::min(kDay_s, requests.time_limit_s.value_or(kDay_s) - 1)));
   require_name("--partition", partition);
   require_name("--account", account);
   if (engine == BatchEngine::kSge) {
@@ -183,19 +183,8 @@ void SubmitOptions::validate() const {
 }
 
 int SubmitOptions::drain_s_or_default() const {
-  const long quarter = std::max(1L, time_limit_s.value_or(kDay_s) / 4);
+  const long quarter = std::max(1L, requests.time_limit_s.value_or(kDay_s) / 4);
   return drain_s.value_or(static_cast<int>(std::min(long{engine_entry(engine).drain_s}, quarter)));
-}
-
-ArrayJob SubmitOptions::requests() const {
-  ArrayJob job;
-  job.concurrent = concurrent;
-  job.cores = cpus;
-  job.memory_bytes = memory_bytes;
-  job.time_limit_s = time_limit_s;
-  job.drain_s = drain_s_or_default();
-  job.retries = retries;
-  return job;
 }
 
 void add_submit_settings(Settings& settings, SubmitOptions& options) {

@@ -18,15 +18,11 @@ struct SubmitOptions {
   BatchEngine engine = BatchEngine::kSlurm;
   bool go = false;  ///< submit; else only write
 
-  int shards = 0;                           ///< of a run that is divided, 1..100000; 0: not set
-  std::optional<int> tasks;                 ///< of a manifest
-  std::optional<int> cpus;                  ///< of a task, 1..1024
-  std::optional<std::size_t> memory_bytes;  ///< of a task
-  std::optional<long> time_limit_s;         ///< of a task, at least 60
-  std::optional<int> concurrent;            ///< tasks at once, at least 1
-  std::optional<int> drain_s;               ///< see drain_s_or_default()
-  int retries = 2;                          ///< further attempts after a task has failed
-  std::string program;  ///< vantage where tasks run; empty: this one, or that of the image
+  int shards = 0;              ///< of a run that is divided, 1..100000; 0: not set
+  std::optional<int> tasks;    ///< of a manifest
+  ArrayJob requests;           ///< of a task; only what options say
+  std::optional<int> drain_s;  ///< see drain_s_or_default()
+  std::string program;         ///< vantage where tasks run; empty: this one, or that of the image
 
   // Of some engines; the table of engines says which.
   std::string partition;
@@ -47,8 +43,6 @@ struct SubmitOptions {
   /// Time in which a task that has to end finishes what is in flight: default that of the engine,
   /// at most a quarter of the time limit.
   [[nodiscard]] int drain_s_or_default() const;
-  /// What tasks request, with the time that they have to end.
-  [[nodiscard]] ArrayJob requests() const;
 };
 
 void add_submit_settings(Settings& settings, SubmitOptions& options);

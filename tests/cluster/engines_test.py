@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -232,15 +233,19 @@ class EnginesTest(unittest.TestCase):
         self.assertIn(f"vantage batch {self.manifest} --output {self.folder}/what's out of sge "
                       "--memory=6553M --threads=4 --grace=90s --index=auto", called)
 
-    def test_sge_tells_a_task_to_end_and_the_task_tells_its_command(self):
+    def add_patient_vantage(self, first=""):
+        """One that says a job is done, makes the returned file, and ends when it is told to."""
         ready = self.folder / "ready"
         # Not in bash: it cannot catch INT when it has been started with INT ignored.
-        patient = (f"import os, signal, sys, time\n"
-                   f"for s in signal.SIGINT, signal.SIGTERM: signal.signal(s, lambda *_: sys.exit(75))\n"
-                   f"for s in signal.SIGUSR1, signal.SIGUSR2: os.kill(os.getpid(), s)\n"
-                   f"print('batch: job 000001', flush=True)\n"
-                   f"open('{ready}', 'w')\ntime.sleep(60)")
-        self.add_program("vantage", f'exec "{sys.executable}" -c "{patient}"')
+        text = ("import os, signal, sys, time\n"
+                "for s in signal.SIGINT, signal.SIGTERM: signal.signal(s, lambda *_: sys.exit(75))\n"
+                f"{first}print('batch: job 000001', flush=True)\nopen('{ready}', 'w')\ntime.sleep(60)")
+        self.add_program("vantage", f'exec "{sys.executable}" -c "{text}"')
+        return ready
+
+    def test_sge_tells_a_task_to_end_and_the_task_tells_its_command(self):
+        ready = self.add_patient_vantage(
+            "for s in signal.SIGUSR1, signal.SIGUSR2: os.kill(os.getpid(), s)\n")
         for signal, expected, says in (("USR1", 99, "goes on in a new job"), ("USR2", 75, "stopped by SGE")):
             code, log = self.run_task(
                 self.script("sge"), {"JOB_ID": "41", "SGE_TASK_ID": "2"},
@@ -263,6 +268,18 @@ class EnginesTest(unittest.TestCase):
         for log in logs:
             self.assertEqual(log.read_text(encoding="utf-8"), f"batch {self.manifest} --output "
                              f"{self.folder}/out --memory=8M --threads=1 --grace=90s --worker\n")
+
+    def test_local_workers_are_told_to_end(self):
+        ready = self.add_patient_vantage()
+        submission = subprocess.Popen(
+            [VANTAGE, "submit", "--engine", "local", "--cpus", "1", "--task-memory", "10M",
+             "--program", self.folder / "programs" / "vantage", self.manifest,
+             "-o", self.folder / "out", "--concurrent", "1", "--go", "--quiet"],
+            env=self.environment, stderr=subprocess.DEVNULL)
+        while not ready.exists():
+            time.sleep(0.02)
+        submission.terminate()
+        self.assertEqual(submission.wait(timeout=30), 75)
 
     def test_wrong_usage_is_one_line(self):
         out = self.folder / "out"
