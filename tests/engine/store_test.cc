@@ -79,8 +79,14 @@ TEST(StoreAnswers, GiveKeysAndReasons) {
   EXPECT_EQ(page.objects[0].info.etag, "\"e\"");
   EXPECT_TRUE(page.objects[1].is_folder);
   EXPECT_EQ(page.next, "a&b");
-  EXPECT_EQ(parse_refusal("<Error><Code>NoSuchKey</Code><Region>x").code, "NoSuchKey");
-  EXPECT_EQ(parse_refusal("<Error><Code>NoSuchKey</Code><Region>x").region, "");
+  HttpAnswer refusal{.status = 400};
+  const auto reason = [&](std::string_view xml) {
+    refusal.body = {xml.begin(), xml.end()};
+    return reason_of(refusal, "data", "https://host", {.region = "us-east-1"});
+  };
+  EXPECT_EQ(reason("<Error><Code>NoSuchKey</Code><Region>x"), "no such object");
+  EXPECT_THAT(reason("<Region>eu-west-1</Region>"), HasSubstr("expected AWS_REGION=eu-west-1"));
+  EXPECT_EQ(reason("<Code>A</Code><Message>b &lt;c&gt;\n</Message>"), "the store says A: b <c>\\n");
 }
 
 std::vector<std::uint8_t> bytes_of_text(std::string_view text) {

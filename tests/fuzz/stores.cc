@@ -13,7 +13,9 @@ void read_answer(Bytes bytes) {
   for (const ListedObject& object : parse_listed_page(text).objects) {
     require(object.key.size() <= text.size(), "a key of the answer");
   }
-  (void)parse_refusal(text);
+  HttpAnswer refusal{.status = 403};
+  refusal.body = {bytes.begin(), bytes.end()};
+  require(!reason_of(refusal, "data", "https://host", {}).empty(), "a reason");
 }
 
 void read_profiles(Bytes bytes) { (void)parse_aws_profiles(text_of(bytes)); }

@@ -19,8 +19,8 @@ AwsProfiles parse_aws_profiles(std::string_view text);
 
 /// How stores are reached, from the variables and files of AWS's programs.
 struct AwsSettings {
-  std::string region;    ///< AWS_REGION, AWS_DEFAULT_REGION, of the profile; empty: none is set
-  std::string endpoint;  ///< AWS_ENDPOINT_URL_S3, AWS_ENDPOINT_URL, of the profile; empty: AWS
+  std::string region = {};  ///< AWS_REGION, AWS_DEFAULT_REGION, of the profile; empty: none is set
+  std::string endpoint = {};  ///< AWS_ENDPOINT_URL_S3, AWS_ENDPOINT_URL, of the profile; empty: AWS
   bool is_anonymous = false;  ///< AWS_NO_SIGN_REQUEST: public data is read without keys
 };
 AwsSettings aws_settings();

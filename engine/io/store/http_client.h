@@ -23,8 +23,8 @@ struct HttpRequest {
 
 struct HttpAnswer {
   int status = 0;
-  std::map<std::string, std::string> headers;  ///< names in lower case
-  std::vector<std::uint8_t> body;
+  std::map<std::string, std::string> headers = {};  ///< names in lower case
+  std::vector<std::uint8_t> body = {};
   int attempts = 1;
 
   /// Empty where there is none.

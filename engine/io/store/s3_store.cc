@@ -6,8 +6,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <cstdlib>
-#include <ctime>
 #include <utility>
 
 #include "engine/error.h"
@@ -42,17 +40,6 @@ std::map<std::string, std::string> headers_of(const PutCondition& condition) {
     headers["if-match"] = condition.if_etag;
   }
   return headers;
-}
-
-/// "12 min behind", from the time of the store's answer.
-std::string clock_error(const HttpAnswer& answer) {
-  std::tm parts{};
-  if (::strptime(answer.header("date").c_str(), "%a, %d %b %Y %H:%M:%S", &parts) == nullptr) {
-    return "off";
-  }
-  const auto off_s = static_cast<long>(std::time(nullptr) - ::timegm(&parts));
-  return fmt::format("{} min {} the store's", (std::abs(off_s) + 30) / 60,
-                     off_s < 0 ? "behind" : "ahead of");
 }
 
 /// Whether the store says that `condition` does not hold; 409: another put is under way.
@@ -173,44 +160,9 @@ HttpAnswer S3Store::expect(const Request& request) {
 }
 
 void S3Store::fail(const Request& request, const HttpAnswer& answer) {
-  const StoreRefusal refusal = parse_refusal(answer.text());
-  const std::string& code = refusal.code;
-  const std::string region =
-      refusal.region.empty() ? answer.header("x-amz-bucket-region") : refusal.region;
-  const auto reason = [&]() -> std::string {
-    if (!region.empty() && region != settings_.region) {
-      return fmt::format("its bucket is in the region {}, expected AWS_REGION={} (it is {})",
-                         quotable(region), quotable(region), settings_.region);
-    }
-    if (code == "RequestTimeTooSkewed") {
-      return fmt::format("the clock of this machine is {}", clock_error(answer));
-    }
-    if (code == "NoSuchBucket") {
-      return fmt::format("there is no bucket '{}'", bucket_);
-    }
-    if (code == "NoSuchKey") {
-      return "no such object";
-    }
-    if (code == "InvalidAccessKeyId" || code == "InvalidToken") {
-      return "the store does not know the access key";
-    }
-    if (code == "SignatureDoesNotMatch") {
-      return "the secret key does not belong to the access key";
-    }
-    if (code == "ExpiredToken") {
-      return "the keys have expired";
-    }
-    if (code == "AccessDenied" || (code.empty() && answer.status == 403)) {
-      return settings_.is_anonymous ? "access is denied without keys" : "access is denied";
-    }
-    if (code.empty()) {
-      return fmt::format("{} answers {}, expected a store that speaks S3", origin_, answer.status);
-    }
-    return fmt::format("the store says {}: {}", quotable(code), quotable(refusal.message));
-  };
   const bool writes = request.method == "PUT" || request.method == "POST";
-  throw Error(
-      fmt::format("cannot {} {}: {}", writes ? "write" : "read", name_of(request.key), reason()));
+  throw Error(fmt::format("cannot {} {}: {}", writes ? "write" : "read", name_of(request.key),
+                          reason_of(answer, bucket_, origin_, settings_)));
 }
 
 std::optional<ObjectInfo> S3Store::info(const std::string& key) {
@@ -358,7 +310,7 @@ void S3Store::check_writable(const std::string& key) {
                         .query = {{"list-type", "2"}, {"max-keys", "1"}, {"prefix", key}}};
   const HttpAnswer answer = send(request);
   // Who may write need not be allowed to list.
-  if (answer.status != 200 && parse_refusal(answer.text()).code != "AccessDenied") {
+  if (answer.status != 200 && element_of(answer.text(), "Code") != "AccessDenied") {
     fail(request, answer);
   }
 }

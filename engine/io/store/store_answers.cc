@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdlib>
+#include <ctime>
 #include <optional>
 #include <utility>
 
 #include "engine/io/store/address.h"
+#include "engine/quoted_text.h"
 
 namespace vantage {
 namespace {
@@ -51,17 +54,59 @@ std::uint64_t number_of(const std::string& text) {
   return number;
 }
 
+/// "12 min behind", from the time of the store's answer.
+std::string clock_error(const HttpAnswer& answer) {
+  std::tm parts{};
+  if (::strptime(answer.header("date").c_str(), "%a, %d %b %Y %H:%M:%S", &parts) == nullptr) {
+    return "off";
+  }
+  const auto off_s = static_cast<long>(std::time(nullptr) - ::timegm(&parts));
+  return fmt::format("{} min {} the store's", (std::abs(off_s) + 30) / 60,
+                     off_s < 0 ? "behind" : "ahead of");
+}
+
 }  // namespace
 
 std::string element_of(std::string_view xml, std::string_view name) {
   return unescaped(take_element(xml, name).value_or(""));
 }
 
-StoreRefusal parse_refusal(std::string_view xml) {
-  return {.code = element_of(xml, "Code"),
-          .message = element_of(xml, "Message"),
-          .region = element_of(xml, "Region"),
-          .server_time = element_of(xml, "ServerTime")};
+std::string reason_of(const HttpAnswer& answer, const std::string& bucket,
+                      const std::string& origin, const AwsSettings& settings) {
+  const std::string xml = answer.text();
+  const std::string code = element_of(xml, "Code");
+  const std::string told_region = element_of(xml, "Region");
+  const std::string region =
+      told_region.empty() ? answer.header("x-amz-bucket-region") : told_region;
+  if (!region.empty() && region != settings.region) {
+    return fmt::format("its bucket is in the region {}, expected AWS_REGION={} (it is {})",
+                       quotable(region), quotable(region), settings.region);
+  }
+  if (code == "RequestTimeTooSkewed") {
+    return fmt::format("the clock of this machine is {}", clock_error(answer));
+  }
+  if (code == "NoSuchBucket") {
+    return fmt::format("there is no bucket '{}'", bucket);
+  }
+  if (code == "NoSuchKey") {
+    return "no such object";
+  }
+  if (code == "InvalidAccessKeyId" || code == "InvalidToken") {
+    return "the store does not know the access key";
+  }
+  if (code == "SignatureDoesNotMatch") {
+    return "the secret key does not belong to the access key";
+  }
+  if (code == "ExpiredToken") {
+    return "the keys have expired";
+  }
+  if (code == "AccessDenied" || (code.empty() && answer.status == 403)) {
+    return settings.is_anonymous ? "access is denied without keys" : "access is denied";
+  }
+  if (code.empty()) {
+    return fmt::format("{} answers {}, expected a store that speaks S3", origin, answer.status);
+  }
+  return fmt::format("the store says {}: {}", quotable(code), quotable(element_of(xml, "Message")));
 }
 
 ListedPage parse_listed_page(std::string_view xml) {

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/io/store/aws_credentials.h"
+#include "engine/io/store/http_client.h"
 #include "engine/io/store/object_store.h"
 
 namespace vantage {
@@ -14,14 +16,9 @@ namespace vantage {
 /// Content of the first element `name`, unescaped.
 std::string element_of(std::string_view xml, std::string_view name);
 
-/// Why a store has refused a request.
-struct StoreRefusal {
-  std::string code;     ///< "NoSuchKey"
-  std::string message;  ///< of the store
-  std::string region;   ///< where the bucket is; empty: not told
-  std::string server_time;
-};
-StoreRefusal parse_refusal(std::string_view xml);
+/// Why the store at `origin` refuses a request for `bucket`, as the end of a message.
+std::string reason_of(const HttpAnswer& answer, const std::string& bucket,
+                      const std::string& origin, const AwsSettings& settings);
 
 /// One page of ListObjectsV2 with encoding-type=url.
 struct ListedPage {
