@@ -30,9 +30,7 @@ EngineCall::EngineCall() {
         "this process was forked while another thread computed, and lacks its threads: start "
         "worker processes with the method 'spawn' or 'forkserver', or before anything computes");
   }
-  if (calls++ == 0) {
-    forget_remote_files();  // what is at an address may be another file by now
-  }
+  ++calls;
 }
 
 EngineCall::~EngineCall() { --calls; }
@@ -75,6 +73,9 @@ std::string bytes_of(const py::handle& text) {
   std::string found = py::reinterpret_borrow<py::bytes>(bytes);
   if (found.find('\0') != std::string::npos) {
     throw UsageError("a text holds a null character, expected none");
+  }
+  if (is_address(found)) {
+    forget_remote_files();  // there may be another file by now
   }
   return found;
 }

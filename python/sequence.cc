@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/io/files/remote_files.h"
 #include "engine/jobs/sequence_job.h"
 #include "engine/jobs/sequence_session.h"
 #include "engine/options/frame_step_setting.h"
@@ -85,6 +86,7 @@ void open(const std::optional<StereoCalibration>& calibration, OpenSequence& ope
   SequenceJob& job = opened.job;
   SequenceSession& session = opened.session;
   Execution& execution = *opened.execution;
+  forget_remote_files();  // a list may name addresses, too
   open_source(job, session);
   FramePair first;
   read_first_pair(*session.pairs, first);

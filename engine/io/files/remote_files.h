@@ -41,7 +41,7 @@ class RemoteFiles {
   /// there.
   virtual bool write(const std::string& address, const std::filesystem::path& file,
                      bool if_absent) = 0;
-  /// What is at addresses may be another file from now on.
+  /// What is at addresses, and how they are reached, may be another from now on.
   virtual void forget() = 0;
 };
 

@@ -125,6 +125,13 @@ AwsKeys AwsCredentials::keys() {
   return found_->keys;
 }
 
+void AwsCredentials::forget() {
+  const std::scoped_lock lock(mutex_);
+  if (found_ && !found_->expires) {
+    found_.reset();
+  }
+}
+
 std::optional<AwsCredentials::Found> AwsCredentials::find() {
   const AwsKeys of_variables{variable("AWS_ACCESS_KEY_ID"), variable("AWS_SECRET_ACCESS_KEY"),
                              variable("AWS_SESSION_TOKEN")};

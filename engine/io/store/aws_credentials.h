@@ -37,6 +37,8 @@ class AwsCredentials {
 
   /// Throws Error that says where keys were looked for.
   AwsKeys keys();
+  /// Those of variables and files are read again next time.
+  void forget();
 
  private:
   struct Found {

@@ -115,6 +115,9 @@ class StoreFiles final : public RemoteFiles {
   void forget() override {
     const std::scoped_lock lock(mutex_);
     known_.clear();
+    readers_.clear();
+    stores_.clear();
+    credentials_.forget();
   }
 
  private:
