@@ -8,6 +8,7 @@
 
 #include "apps/settings/command_line.h"
 #include "engine/error.h"
+#include "engine/io/files/checksum.h"
 #include "engine/io/files/remote_files.h"
 #include "engine/io/images/scene_mask.h"
 #include "engine/io/video/image_sequence.h"
@@ -89,12 +90,14 @@ bool BatchItem::goes_with_others() const {
          job_.poses.empty() && options.rows.keys.empty();
 }
 
-std::string BatchItem::options() const {
+std::uint64_t BatchItem::options_hash() const {
   SettingValue values = settings_.values();
   for (const std::string_view name : kOfPair) {
     values.erase(std::string(name));
   }
-  return values.dump(-1, ' ', false, SettingValue::error_handler_t::replace);
+  Fnv1aHash hash;
+  hash.add(values.dump(-1, ' ', false, SettingValue::error_handler_t::replace));
+  return hash.value();
 }
 
 std::string BatchItem::to_job_file(const std::string& output) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,10 @@ class BatchItem {
   /// Of one pair of images, whose files have no numbers: DIR/disparity.pfm.
   [[nodiscard]] bool is_pair() const;
   /// Of a pair whose result depends on no other pair in the same run, if its white level is known.
-  /// Pairs of equal options() can be run together.
+  /// Pairs of equal options_hash() can be run together.
   [[nodiscard]] bool goes_with_others() const;
-  /// Everything but the inputs, the range and the output.
-  [[nodiscard]] std::string options() const;
+  /// A hash of everything but the inputs, the range and the output.
+  [[nodiscard]] std::uint64_t options_hash() const;
   /// A file of settings for 'vantage run', which goes on with what is in `output`.
   [[nodiscard]] std::string to_job_file(const std::string& output);
   /// The same for a list of pairs with these options, of which bad ones are left out.

@@ -22,13 +22,12 @@ class JobMaker {
  public:
   explicit JobMaker(double core_seconds) : limit_(core_seconds) {}
 
-  void add(int index, const BatchItem& item, const ItemCost& cost) {
-    if (item.is_pair()) {
-      add_pair(index, item, cost);
+  void add(int index, const ItemCost& cost) {
+    if (cost.is_pair) {
+      add_pair(index, cost);
       return;
     }
-    const int chunks =
-        (cost.frames + item.job().sequence.chunk_frames - 1) / item.job().sequence.chunk_frames;
+    const int chunks = (cost.frames + cost.chunk_frames - 1) / cost.chunk_frames;
     const int shards =
         std::clamp(static_cast<int>(std::ceil(cost.core_seconds / limit_)), 1, std::max(1, chunks));
     if (shards == 1) {
@@ -52,9 +51,9 @@ class JobMaker {
   }
 
  private:
-  void add_pair(int index, const BatchItem& item, const ItemCost& cost) {
-    if (item.goes_with_others() && cost.knows_white) {
-      put(pairs_.try_emplace(item.options(), PlannedJob{.is_list = true}).first->second, index,
+  void add_pair(int index, const ItemCost& cost) {
+    if (cost.goes_with_others) {
+      put(pairs_.try_emplace(cost.options_hash, PlannedJob{.is_list = true}).first->second, index,
           cost);
       return;
     }
@@ -82,7 +81,7 @@ class JobMaker {
   double limit_;
   std::vector<PlannedJob> jobs_;
   PlannedJob films_;
-  std::map<std::string, PlannedJob> pairs_;  ///< by options
+  std::map<std::uint64_t, PlannedJob> pairs_;  ///< by options
 };
 
 /// Many at once: reading headers is mostly waiting for a store or a disk.
@@ -138,7 +137,7 @@ BatchPlan make_plan(const BatchJob& batch, const std::vector<ManifestItem>& item
     plan.core_seconds += cost.core_seconds;
     plan.gigabytes_in += 1e-9 * static_cast<double>(cost.bytes_in);
     plan.gigabytes_out += 1e-9 * static_cast<double>(cost.bytes_out);
-    jobs.add(static_cast<int>(i), BatchItem(items[i], batch, options), cost);
+    jobs.add(static_cast<int>(i), cost);
   }
   plan.jobs = jobs.finish();
   return plan;

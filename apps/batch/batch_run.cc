@@ -115,6 +115,12 @@ class BatchSession {
     if (!plan) {
       return ending_of_interrupt();
     }
+    if (is_remote_ && joins_ && !state_->excludes()) {
+      throw Error(
+          fmt::format("{}: this store replaces objects in spite of If-None-Match, so that "
+                      "workers would take the same jobs; expected one that does not",
+                      job_.run.output));
+    }
     if (job_.retry_failed) {
       reopen_failed(*plan);
     }

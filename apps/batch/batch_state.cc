@@ -51,6 +51,11 @@ BatchPlan BatchState::keep_plan(const BatchPlan& plan) {
   return *read_plan();
 }
 
+bool BatchState::excludes() {
+  const std::optional<std::string> plan = read(key_of_plan());
+  return !store_.put(key_of_plan(), bytes_of(*plan), {.if_absent = true});
+}
+
 std::set<std::string> BatchState::done() {
   constexpr std::string_view kExtension = ".json";
   const std::string folder = std::string(kPrefix) + "done/";

@@ -29,6 +29,9 @@ class BatchState {
   /// The plan in force: `plan`, unless another worker was first.
   BatchPlan keep_plan(const BatchPlan& plan);
 
+  /// Whether the store refuses to create what is there, on which leases rely; there must be a plan.
+  bool excludes();
+
   /// Names of the jobs that are done.
   std::set<std::string> done();
   [[nodiscard]] bool is_done(const std::string& name);

@@ -106,10 +106,10 @@ Opened open_item(const BatchItem& item) {
 
 }  // namespace
 
-CostModel::Sample CostModel::sample_of(const BatchItem& item, const ImageExtent& size,
-                                       PairSource* pairs) {
+CostModel::Sample CostModel::sample_of(const BatchItem& item, std::uint64_t options_hash,
+                                       const ImageExtent& size, PairSource* pairs) {
   const std::scoped_lock lock(mutex_);
-  const auto [known, is_new] = samples_.try_emplace(item.options());
+  const auto [known, is_new] = samples_.try_emplace(options_hash);
   Sample& sample = known->second;
   if (!is_new) {
     return sample;
@@ -148,10 +148,13 @@ CostModel::Sample CostModel::sample_of(const BatchItem& item, const ImageExtent&
 
 ItemCost CostModel::cost_of(const BatchItem& item) {
   ItemCost cost;
+  cost.is_pair = item.is_pair();
+  cost.options_hash = item.options_hash();
+  cost.chunk_frames = item.job().sequence.chunk_frames;
   try {
     const Opened opened = open_item(item);
     const MatchOptions& match = item.job().sequence.match;
-    const Sample sample = sample_of(item, opened.size, opened.pairs.get());
+    const Sample sample = sample_of(item, cost.options_hash, opened.size, opened.pairs.get());
     const double pixels = static_cast<double>(opened.size.width_px) * opened.size.height_px;
     const double candidates = match.disparities_auto
                                   ? sample.candidates_per_px * opened.size.width_px
@@ -159,7 +162,7 @@ ItemCost CostModel::cost_of(const BatchItem& item) {
     cost.frames = opened.frames;
     cost.core_seconds = opened.frames * pixels * candidates * sample.seconds_per_cell;
     cost.memory_bytes = static_cast<std::size_t>(pixels * sample.memory_per_pixel);
-    cost.knows_white = opened.knows_white;
+    cost.goes_with_others = opened.knows_white && item.goes_with_others();
     cost.bytes_in = opened.bytes_in;
     cost.bytes_out =
         static_cast<std::uint64_t>(opened.frames * pixels * bytes_per_pixel(item.job()));

@@ -17,7 +17,10 @@ struct ItemCost {
   int frames = 0;
   double core_seconds = 0;
   std::size_t memory_bytes = 0;
-  bool knows_white = false;  ///< of a pair: whatever other images hold
+  bool is_pair = false;
+  bool goes_with_others = false;  ///< of a pair: with those of the same options
+  std::uint64_t options_hash = 0;
+  int chunk_frames = 1;
   std::uint64_t bytes_in = 0;
   std::uint64_t bytes_out = 0;
   std::string problem;  ///< why the input cannot be opened; empty: it can
@@ -39,10 +42,11 @@ class CostModel {
     double candidates_per_px = 0;  ///< per pixel of the width, where the range is found
     double memory_per_pixel = 0;   ///< bytes
   };
-  Sample sample_of(const BatchItem& item, const ImageExtent& size, PairSource* pairs);
+  Sample sample_of(const BatchItem& item, std::uint64_t options_hash, const ImageExtent& size,
+                   PairSource* pairs);
 
   std::mutex mutex_;
-  std::map<std::string, Sample> samples_;  ///< by options
+  std::map<std::uint64_t, Sample> samples_;  ///< by options
 };
 
 }  // namespace vantage::apps

@@ -1,10 +1,14 @@
 #include "apps/batch/job_runner.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <span>
+#include <system_error>
 #include <utility>
 
 #include "apps/batch/batch_state.h"
@@ -16,6 +20,7 @@
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/checksum.h"
+#include "engine/io/files/file_descriptor.h"
 #include "engine/io/files/remote_files.h"
 #include "engine/sequence/journal/journal_content.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -43,6 +48,15 @@ std::string csv_field(const std::string& text) {
 /// "disparity/000003.pfm" of a list is "disparity.pfm" of a pair.
 fs::path name_of_pair(const fs::path& name) {
   return fs::path(name.parent_path()) += name.extension();
+}
+
+/// Makes all names below `folder` durable: one call for many folders.
+void flush_file_system(const fs::path& folder) {
+  const FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!opened.valid() || ::syncfs(opened.get()) != 0) {
+    throw Error(fmt::format("cannot write {}: {}", folder.string(),
+                            std::generic_category().message(errno)));
+  }
 }
 
 ItemResult done(int index, const ChildEnding& ending) {
@@ -169,8 +183,10 @@ void JobRunner::deliver(const fs::path& from, const std::string& name, const Fil
     }
     return;
   }
-  make_folder(to.parent_path());
-  fs::rename(from, to, error);
+  fs::create_directories(to.parent_path(), error);
+  if (!error) {
+    fs::rename(from, to, error);
+  }
   if (error) {
     throw Error(fmt::format("cannot write {}: {}", to.string(), error.message()));
   }
@@ -226,6 +242,9 @@ void JobRunner::run_list(const std::vector<int>& items, const fs::path& work,
       children_.run({"run", (work / "job.toml").string()}, work / "report.json", stop_);
   if (ending.is_done()) {
     take_list_results(items, first.job(), ending, results);
+    if (!is_remote_) {
+      flush_file_system(batch_.run.output);  // once for all names, ahead of the results that tell
+    }
   } else if (items.size() > 1 && !is_stopped()) {
     // One of them may be what ends the run.
     for (const int index : items) {
