@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <random>
 #include <thread>
 
 #include "apps/batch/batch_plan.h"
@@ -45,7 +46,8 @@ constexpr const char* kItemLines = "items.jsonl";
 std::string name_of_worker() {
   std::array<char, 256> host = {};
   ::gethostname(host.data(), host.size() - 1);
-  return fmt::format("{} process {}", host.data(), ::getpid());
+  // Hosts of containers may have one name, and all processes the number 1.
+  return fmt::format("{} process {} ({:08x})", host.data(), ::getpid(), std::random_device()());
 }
 
 std::string identity_of(const std::string& manifest) {

@@ -13,6 +13,7 @@ namespace vantage::apps {
 
 /// What the workers of a batch share, as objects below .vantage/batch/ in its store:
 ///   plan.json                what all agree on
+///   probe                    of excludes()
 ///   leases/NAME/000001 …     who does a job, see Lease
 ///   progress/NAME.json       results of a job that is not done
 ///   done/NAME.json           results of a job that is done; it is written once
@@ -29,7 +30,7 @@ class BatchState {
   /// The plan in force: `plan`, unless another worker was first.
   BatchPlan keep_plan(const BatchPlan& plan);
 
-  /// Whether the store refuses to create what is there, on which leases rely; there must be a plan.
+  /// Whether the store refuses to create what is there, on which leases rely.
   bool excludes();
 
   /// Names of the jobs that are done.
