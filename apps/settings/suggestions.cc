@@ -84,6 +84,8 @@ const auto& option_answers() {
       WordAnswer{{"verbose", "debug", "v", "log-level"},
                  "--report",
                  "messages are printed without --quiet; --report FILE writes all figures"},
+      WordAnswer{{"no-submit"}, "--go", "without --go scripts are only written"},
+      WordAnswer{{"slurm-memory"}, "--task-memory", "it is now --task-memory"},
       WordAnswer{{"silent", "q"}, "--quiet", "--quiet prints errors only"},
       WordAnswer{
           {"out", "outfile", "out-dir", "outdir", "output-dir", "output-file", "output-folder"},

@@ -68,10 +68,11 @@ std::optional<long> to_seconds(const std::string& text) {
 
 void add_time_setting(Settings& settings, std::optional<long>& field) {
   constexpr long kMin_s = 60;  // of AWS Batch; Slurm rounds up to minutes
-  Setting& time = settings.add("time", "TIME",
-                               "Time limit per task as for sbatch, such as 90, 12:00:00 or 1-12; "
-                               "what needs longer continues "
-                               "in a new task. auto: from the manifest, else of the engine");
+  Setting& time =
+      settings.add("time", "TIME",
+                   "Time limit per task as for sbatch, such as 90, 12:00:00 or 1-12; what needs "
+                   "longer goes on in "
+                   "a new task. auto: as the plan of the manifest says, else that of the engine");
   time.words = {"auto"};
   time.set = [&field](const SettingValue& value) {
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
@@ -114,10 +115,12 @@ void add_task_settings(Settings& settings, SubmitOptions& options) {
   settings.integer("concurrent", options.requests.concurrent, "N",
                    "Maximum number of tasks at a time; auto: all");
   settings.integer("cpus", options.requests.cores, "N",
-                   "Processors per task; auto: from the manifest; of one run: --threads, else the "
-                   "default of the cluster");
-  add_size_setting(settings, "task-memory", options.requests.memory_bytes,
-                   "Memory per task, such as 8G; auto: from the manifest, else of the engine");
+                   "Processors per task; auto: --threads, else 4; of one run the default of the "
+                   "cluster");
+  add_size_setting(
+      settings, "task-memory", options.requests.memory_bytes,
+      "Memory per task, such as 8G; auto: as the plan of the manifest says; of one run "
+      "the default of the cluster");
   add_time_setting(settings, options.requests.time_limit_s);
   settings.integer("drain-time", options.drain_s, "SECONDS",
                    "Time in which a task that has to end finishes its work or hands it back; auto: "

@@ -301,6 +301,7 @@ class EnginesTest(unittest.TestCase):
                 (["--engine", "slurm", self.manifest, *TASKS, "--shards", "3"], "--shards has no effect"),
                 (["--left", "left", "--right", "right", "--shards", "3", "--tasks", "4"],
                  "--tasks has no effect without a manifest"),
+                (["--no-submit", self.manifest], "without --go scripts are only written"),
                 (["--engine", "local", self.manifest, *TASKS], "--tasks has no effect with --engine local"),
                 (["--engine", "sge", "films\n.csv", *TASKS], "control characters")):
             result = self.run_submit(*arguments, "-o", out)
