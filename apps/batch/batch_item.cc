@@ -18,9 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the batch itself, or what each run gets from it.
-constexpr std::array<std::string_view, 8> kOfBatch = {"output", "resume",   "dry-run", "report",
-                                                      "quiet",  "progress", "worker",  "manifest"};
+/// Of the batch itself, or of each worker, which may have other means than the others.
+constexpr std::array<std::string_view, 10> kOfBatch = {"output",  "resume", "dry-run",  "report",
+                                                       "quiet",   "worker", "manifest", "progress",
+                                                       "threads", "memory"};
 /// What pairs of one list need not share.
 constexpr std::array<std::string_view, 4> kOfPair = {"left", "right", "disparities", "output"};
 
@@ -68,6 +69,8 @@ BatchItem::BatchItem(const ManifestItem& item, const BatchJob& batch,
     settings_.take_values(item.options);
     job_.output = (fs::path(batch.run.output) / item.output).string();
     job_.common.quiet = true;
+    job_.common.execution.threads = batch.run.common.execution.threads;
+    job_.memory_bytes = batch.run.memory_bytes;
     if (job_.input.is_stream()) {
       throw UsageError("the input is a stream, expected files: an item may be tried again");
     }
