@@ -209,7 +209,8 @@ class EnginesTest(unittest.TestCase):
         for expected in ("-t 1-2", "-pe smp 4", "-l h_rt=1800"):
             self.assertIn(expected, found)
         for cpus in ("1", "2"):  # goes on with other means
-            self.submit("local", self.manifest, "-o", self.folder / "out", "--cpus", cpus, "--go", "--quiet")
+            self.submit("local", self.manifest, "-o", self.folder / "out", "--cpus", cpus,
+                        "--concurrent", "1", "--go", "--quiet")
 
     def run_task(self, script, environment, meanwhile=""):
         """Exit code and log of task 2; `meanwhile` is bash that knows the task's process."""
