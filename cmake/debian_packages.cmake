@@ -88,6 +88,8 @@ static vantage::engine, in C++.")
 # What cpack puts into packages; it would build all targets itself, tests among them.
 add_custom_target(vantage_packaged DEPENDS vantage vantage_reference vantage_engine vantage_shared)
 if(TARGET vantage_python)
+  packages_of(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS ${libcurl_LINK_LIBRARIES})
+  string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS ", ca-certificates")
   debian_package(python python3-vantage python
     "python3 (>= ${VANTAGE_PYTHON_VERSION}), \
 python3 (<< ${VANTAGE_NEXT_PYTHON}), python3-numpy, ${late_libraries}"

@@ -7,7 +7,7 @@ libraries of its module beside it, and states the C library it needs in its name
 What auditwheel does elsewhere (Debian 12 does not have it). Libraries get names of their own, so
 that they do not meet those of the system or of another wheel in a process. Libraries that the engine
 opens on first use (engine/late_library.h) keep theirs: only libtiff is small enough to come along.
-The others, FFmpeg's and OpenCV's for rare image formats, are used where the system has them.
+The others, FFmpeg's, libcurl and OpenCV's for rare image formats, are used where the system has them.
 """
 import hashlib
 import pathlib

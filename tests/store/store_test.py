@@ -293,9 +293,11 @@ class StoreTest(unittest.TestCase):
                     "again.pfm", *MATCH)
         self.assertGreater(time.monotonic() - begin, 1, "Retry-After counts")
         faults.busy_share = 0
-        faults.no_ranges = True
-        self.assertEqual(film, self.results_of("whole", self.remote, "--left", "s3://data/end.mp4",
-                                               "--right", "s3://data/film.mkv"))
+        web = self.server.url + "/web"
+        for no_ranges in (True, False):
+            faults.no_ranges = no_ranges
+            self.assertEqual(film, self.results_of(f"web-{no_ranges}", self.remote, "--left",
+                                                   f"{web}/end.mp4", "--right", f"{web}/film.mkv"))
 
     def test_replaced_objects(self):
         changed = "has changed since it was begun, expected the same object"
