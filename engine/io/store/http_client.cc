@@ -136,6 +136,13 @@ struct HttpClient::Transfer {
       return 0;
     }
     try {
+      if (body.empty()) {  // at once what it will be, so that blocks of a film take no more
+        constexpr std::uint64_t kLargestReserve = 64U << 20;
+        std::uint64_t length = 0;
+        const std::string text = transfer.answer.header("content-length");
+        std::from_chars(text.data(), text.data() + text.size(), length);
+        body.reserve(std::min({length, transfer.max_bytes, kLargestReserve}));
+      }
       body.insert(body.end(), bytes, bytes + count);
     } catch (...) {
       transfer.problem = std::current_exception();
