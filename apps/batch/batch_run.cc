@@ -17,7 +17,6 @@
 #include "apps/batch/batch_state.h"
 #include "apps/batch/batch_worker.h"
 #include "apps/batch/job_runner.h"
-#include "apps/batch/lease.h"
 #include "apps/commands/commands.h"
 #include "apps/process/child_process.h"
 #include "apps/process/interrupt.h"
@@ -30,6 +29,7 @@
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/checksum.h"
 #include "engine/io/files/remote_files.h"
+#include "engine/io/store/lease.h"
 #include "engine/io/store/opened_store.h"
 #include "engine/seconds_since.h"
 #include "engine/sequence/options/sequence_layout.h"
@@ -280,9 +280,7 @@ class BatchSession {
   int finish(const BatchPlan& plan) {
     const std::vector<ItemResult> results = item_results(plan, *state_);
     const std::string lines = joined_path(job_.run.output, kItemLines).string();
-    const std::string text = item_lines(items_, results);
-    (void)store_->put(kItemLines, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
-                      {});
+    (void)store_->put_text(kItemLines, item_lines(items_, results));
     BatchTotals totals;
     for (const ItemResult& result : results) {
       totals.add(result);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <span>
 #include <string_view>
 
 #include "engine/error.h"
@@ -17,10 +16,6 @@ std::string key_of_plan() { return std::string(BatchState::kPrefix) + "plan.json
 
 std::string key_of(std::string_view folder, const std::string& name) {
   return fmt::format("{}{}/{}.json", BatchState::kPrefix, folder, name);
-}
-
-std::span<const std::uint8_t> bytes_of(std::string_view text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 std::string text_of(const std::vector<ItemResult>& results) {
@@ -47,15 +42,15 @@ std::optional<BatchPlan> BatchState::read_plan() {
 }
 
 BatchPlan BatchState::keep_plan(const BatchPlan& plan) {
-  (void)store_.put(key_of_plan(), bytes_of(to_json(plan)), {.if_absent = true});
+  (void)store_.put_text(key_of_plan(), to_json(plan), {.if_absent = true});
   return *read_plan();
 }
 
 bool BatchState::excludes() {
   // Another content: a put that is repeated may meet its own.
   const std::string key = std::string(kPrefix) + "probe";
-  (void)store_.put(key, bytes_of("is there"), {});
-  return !store_.put(key, bytes_of("is created"), {.if_absent = true});
+  (void)store_.put_text(key, "is there");
+  return !store_.put_text(key, "is created", {.if_absent = true});
 }
 
 std::set<std::string> BatchState::done() {
@@ -98,12 +93,12 @@ std::vector<ItemResult> BatchState::results(const std::string& name) {
 }
 
 void BatchState::keep_progress(const std::string& name, const std::vector<ItemResult>& results) {
-  (void)store_.put(key_of("progress", name), bytes_of(text_of(results)), {});
+  (void)store_.put_text(key_of("progress", name), text_of(results));
 }
 
 bool BatchState::finish(const std::string& name, const std::vector<ItemResult>& results) {
   const bool is_first =
-      store_.put(key_of("done", name), bytes_of(text_of(results)), {.if_absent = true}).has_value();
+      store_.put_text(key_of("done", name), text_of(results), {.if_absent = true}).has_value();
   store_.remove(key_of("progress", name));
   return is_first;
 }

@@ -10,7 +10,7 @@
 
 #include "apps/batch/batch_state.h"
 #include "apps/batch/job_runner.h"
-#include "apps/batch/lease.h"
+#include "engine/io/store/lease.h"
 
 namespace vantage::apps {
 

@@ -108,9 +108,7 @@ ItemResult JobRunner::failed(int index, const ChildEnding& ending) {
   // It is repeated apart from the results.
   const std::string place = is_remote_ ? fmt::format("failed-{:06}", index)
                                        : (fs::path(batch_.run.output) / key).string();
-  const std::string text = item(index).to_job_file(place);
-  (void)store_.put(key + ".toml", {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()},
-                   {});
+  (void)store_.put_text(key + ".toml", item(index).to_job_file(place));
   ItemResult result{.item = index, .failed = true, .problem = ending.problem};
   result.attempts = ending.attempts;
   result.seconds = ending.seconds;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace vantage {
@@ -67,6 +68,11 @@ class ObjectStore {
   virtual std::optional<std::string> put(const std::string& key,
                                          std::span<const std::uint8_t> bytes,
                                          const PutCondition& condition) = 0;
+  /// put() of a text.
+  std::optional<std::string> put_text(const std::string& key, std::string_view text,
+                                      const PutCondition& condition = {}) {
+    return put(key, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, condition);
+  }
   /// put() of the content of `file`, in parts where it is large.
   virtual std::optional<std::string> put_file(const std::string& key,
                                               const std::filesystem::path& file,

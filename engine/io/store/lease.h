@@ -11,7 +11,7 @@
 
 #include "engine/io/store/object_store.h"
 
-namespace vantage::apps {
+namespace vantage {
 
 /// The right to do something alone among many workers, which shows signs of life as long as it
 /// lives. Objects PREFIX/NAME/000001, 000002, … are its generations: who creates one first holds
@@ -84,4 +84,4 @@ class Leases {
   std::map<std::string, Seen> seen_;
 };
 
-}  // namespace vantage::apps
+}  // namespace vantage

@@ -1,26 +1,21 @@
-#include "apps/batch/lease.h"
+#include "engine/io/store/lease.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <exception>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "engine/error.h"
 
-namespace vantage::apps {
+namespace vantage {
 namespace {
 
 constexpr std::string_view kBack = ".back";  // beside a generation that was handed back
 constexpr int kSignsOfLife = 4;              // per lease
-
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
 
 }  // namespace
 
@@ -47,7 +42,7 @@ void Lease::show_life() {
        ++sign) {
     lock.unlock();
     try {
-      (void)store_.put(key(generation_), bytes_of(fmt::format("{} {}\n", holder_, sign)), {});
+      (void)store_.put_text(key(generation_), fmt::format("{} {}\n", holder_, sign));
     } catch (const std::exception&) {
       // The next one may succeed; if none does, others go on with the work.
     }
@@ -80,7 +75,7 @@ void Lease::finish() {
 
 void Lease::hand_back() {
   stop_showing_life();
-  (void)store_.put(key(generation_) + std::string(kBack), bytes_of(holder_ + "\n"), {});
+  (void)store_.put_text(key(generation_) + std::string(kBack), holder_ + "\n");
 }
 
 Leases::Leases(ObjectStore& store, std::string prefix, std::string holder,
@@ -130,7 +125,7 @@ std::unique_ptr<Lease> Leases::take(const std::string& name) {
   Seen& seen = seen_[name];
   const int generation = seen.generation + 1;
   const std::string key = fmt::format("{}{}/{:06}", prefix_, name, generation);
-  const auto etag = store_.put(key, bytes_of(holder_ + " 0\n"), {.if_absent = true});
+  const auto etag = store_.put_text(key, holder_ + " 0\n", {.if_absent = true});
   const int abandoned = seen.generation - seen.returned;
   seen = {.generation = generation,
           .returned = seen.returned,
@@ -143,4 +138,4 @@ std::unique_ptr<Lease> Leases::take(const std::string& name) {
       new Lease(store_, prefix_, name, generation, abandoned, holder_, lease_));
 }
 
-}  // namespace vantage::apps
+}  // namespace vantage
