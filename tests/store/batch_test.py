@@ -148,6 +148,20 @@ class Batches(unittest.TestCase):
             self.assertIn("000005.png", ended.stderr)
             self.assertIn("has changed", ended.stderr)
 
+    def test_an_object_of_others_stays(self):
+        with ObjectServer(page_keys=1000) as server:
+            server.add_folder(self.folder / "clip", "clip/")
+            server.put("manifest.csv", b"output,left,right\npair,clip/left/000000.png,clip/right/000000.png\n"
+                       b"film,clip/left,clip/right\n")
+            mine = ("out/pair/disparity.png", "out/film/disparity/000002.png")
+            for key in mine:
+                server.put(key, b"mine")
+            ended = run("batch", "s3://data/manifest.csv", "-o", "s3://data/out", *OPTIONS,
+                        env={**os.environ, **server.environment()})
+            self.assertEqual(ended.returncode, 3, ended.stderr)
+            self.assertEqual(ended.stderr.count("did not make it"), 2, ended.stderr)
+            self.assertEqual([server.buckets["data"][key].content for key in mine], [b"mine"] * 2)
+
     def test_nothing_is_computed_without_keys_or_right(self):
         with ObjectServer() as server:
             server.put("manifest.csv", b"output,left,right\nfilm,clip/left,clip/right\n")
