@@ -220,7 +220,7 @@ TEST(InputCommandLine, UnknownCommandsAndHelp) {
   // What pairs and films need stands first, the book last.
   EXPECT_THAT(result.out,
               ContainsRegex("Stereo pairs\n  check.*\n  match.*\nSequences and films\n  run.*\n"
-                            "Scharstein's book\n  book figure [^:]*\n\n'vantage help"));
+                            "Scharstein's book\n  book figure [^:]*\n\nInputs are files"));
   result = succeeds(run_vantage({"match", "--help"}));
   EXPECT_THAT(result.out, HasSubstr("--disparities MIN:MAX"));
   EXPECT_EQ(result.out.find("--trace FILE"), std::string::npos);

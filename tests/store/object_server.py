@@ -88,6 +88,7 @@ class ObjectServer:
 
         class Server(ThreadingHTTPServer):
             daemon_threads = True
+            request_queue_size = 128  # clients read ahead: many connect at a time
 
             def handle_error(self, request, client_address):
                 pass  # clients that end early

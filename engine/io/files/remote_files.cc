@@ -67,6 +67,12 @@ bool is_folder(const fs::path& path) {
   return status && status->is_folder;
 }
 
+void read_ahead(const fs::path& path) {
+  if (is_address(path)) {
+    remote_files(path).read_ahead(path.string());
+  }
+}
+
 std::uint64_t bytes_of_file(const fs::path& path) {
   if (is_address(path)) {
     return remote_files(path).status(path.string()).value_or(FileStatus()).bytes;

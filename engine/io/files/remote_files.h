@@ -32,6 +32,8 @@ class RemoteFiles {
   virtual std::optional<FileStatus> status(const std::string& address) = 0;
   /// The whole file. Error beyond `max_bytes`.
   virtual std::vector<std::uint8_t> read(const std::string& address, std::uint64_t max_bytes) = 0;
+  /// read() of this file will follow soon: begins with it.
+  virtual void read_ahead(const std::string& address) = 0;
   virtual std::unique_ptr<RandomAccessFile> open(const std::string& address) = 0;
   /// Names of the files directly in a folder, in no order.
   virtual std::vector<std::string> names(const std::string& folder) = 0;
@@ -63,6 +65,9 @@ bool is_file(const std::filesystem::path& path);
 bool is_folder(const std::filesystem::path& path);
 /// Of a file; 0 where it is missing.
 std::uint64_t bytes_of_file(const std::filesystem::path& path);
+
+/// RemoteFiles::read_ahead(); nothing for a local file, which the system reads ahead.
+void read_ahead(const std::filesystem::path& path);
 
 /// `folder` / `name`; an address is itself.
 std::filesystem::path joined_path(const std::filesystem::path& folder,

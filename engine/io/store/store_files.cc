@@ -15,6 +15,7 @@
 #include "engine/io/store/block_reader.h"
 #include "engine/io/store/http_client.h"
 #include "engine/io/store/http_store.h"
+#include "engine/io/store/read_ahead.h"
 #include "engine/io/store/s3_store.h"
 
 namespace vantage {
@@ -24,6 +25,8 @@ namespace {
 constexpr std::size_t kKeptReaders = 4;
 /// About 200 bytes each.
 constexpr std::size_t kMaxKnown = 500'000;
+/// As of the largest file that is read whole.
+constexpr std::uint64_t kMaxAheadBytes = 1ULL << 33;
 
 class OpenedObject final : public RandomAccessFile {
  public:
@@ -53,6 +56,13 @@ class StoreFiles final : public RemoteFiles {
   }
 
   std::vector<std::uint8_t> read(const std::string& address, std::uint64_t max_bytes) override {
+    std::optional<std::vector<std::uint8_t>> fetched = ahead_.take(address);
+    return fetched ? std::move(*fetched) : read_now(address, max_bytes);
+  }
+
+  void read_ahead(const std::string& address) override { ahead_.begin(address); }
+
+  std::vector<std::uint8_t> read_now(const std::string& address, std::uint64_t max_bytes) {
     const Address place = parse_address(address);
     const std::optional<ObjectInfo> before = known(place);
     ObjectPart part = store_of(place)->read(place.key, {}, before ? before->etag : "", max_bytes);
@@ -176,6 +186,9 @@ class StoreFiles final : public RemoteFiles {
   std::map<std::string, std::shared_ptr<ObjectStore>> stores_;
   std::map<std::string, ObjectInfo> known_;
   std::list<std::pair<std::string, std::shared_ptr<BlockReader>>> readers_;
+  /// Last: its requests use the others.
+  ReadAhead ahead_{
+      [this](const std::string& address) { return read_now(address, kMaxAheadBytes); }};
 };
 
 }  // namespace

@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kMaxMissingPerFile = 100;
+constexpr int kFramesAhead = 8;
 
 /// Names of the regular files in `folder` ("" is the current one) that `wanted` accepts.
 template <typename Wanted>
@@ -55,6 +56,13 @@ bool ImageSequence::fetch(FetchedFrame& frame) {
   if (next_index_ >= count_) {
     return false;
   }
+  // Only of frames that follow each other: those that are looked at singly may be the only ones.
+  if (next_index_ > 0 && next_index_ == last_index_ + 1) {
+    for (int ahead = 1; ahead <= kFramesAhead && next_index_ + ahead < count_; ++ahead) {
+      read_ahead(path(next_index_ + ahead));
+    }
+  }
+  last_index_ = next_index_;
   frame.file = path(next_index_++);
   frame.reading = reading_;
   frame.frames_missing = 0;

@@ -39,6 +39,7 @@ class ImageSequence : public FrameSource {
   std::string name_;
   int count_;
   int next_index_ = 0;
+  int last_index_ = -1;  ///< of the last fetch()
   PhotographReading reading_;
 };
 
