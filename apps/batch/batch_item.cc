@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the batch itself, or of each worker, which may have other means than the others.
+/// Options of the batch itself, and those that each worker chooses for its machine.
 constexpr std::array<std::string_view, 10> kOfBatch = {"output",  "resume", "dry-run",  "report",
                                                        "quiet",   "worker", "manifest", "progress",
                                                        "threads", "memory"};

@@ -22,16 +22,16 @@ class BatchItem {
   BatchItem& operator=(const BatchItem&) = delete;
 
   [[nodiscard]] const RunJob& job() const { return job_; }
-  /// Of one pair of images, whose files have no numbers: DIR/disparity.pfm.
+  /// Whether the item is two images. Its result files then have no numbers: DIR/disparity.pfm.
   [[nodiscard]] bool is_pair() const;
-  /// Of a pair whose result depends on no other pair in the same run, if its white level is known.
-  /// Pairs of equal options_hash() can be run together.
+  /// Whether a pair can be run together with others of equal options_hash(), without changing its
+  /// result. Its white level must be known.
   [[nodiscard]] bool goes_with_others() const;
   /// A hash of everything but the inputs, the range and the output.
   [[nodiscard]] std::uint64_t options_hash() const;
   /// A file of settings for 'vantage run', which goes on with what is in `output`.
   [[nodiscard]] std::string to_job_file(const std::string& output);
-  /// The same for a list of pairs with these options, of which bad ones are left out.
+  /// The same for a list of pairs with these options. The run skips bad pairs.
   [[nodiscard]] std::string to_job_file_of_list(const std::string& list, const std::string& output);
 
  private:

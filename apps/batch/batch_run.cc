@@ -28,6 +28,7 @@
 #include "engine/error.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/checksum.h"
+#include "engine/io/files/file_bytes.h"
 #include "engine/io/files/remote_files.h"
 #include "engine/io/store/lease.h"
 #include "engine/io/store/opened_store.h"
@@ -51,8 +52,8 @@ std::string name_of_worker() {
 }
 
 std::string identity_of(const std::string& manifest) {
-  const std::optional<FileContent> content = file_content(manifest);
-  return content ? fmt::format("{} bytes, crc32 {:08x}", content->bytes, content->crc32) : "";
+  const std::vector<std::uint8_t> bytes = read_file_bytes(manifest);
+  return fmt::format("{} bytes, crc32 {:08x}", bytes.size(), crc32_of(bytes));
 }
 
 void check_files(const BatchJob& job, const Settings& settings) {

@@ -167,6 +167,9 @@ void ResultMirror::keep() {
 
 void ResultMirror::finish() {
   keep();
+  if (!part_.empty()) {
+    return;  // others still need what is not here
+  }
   std::vector<std::string> keys;
   store_.list(prefix_ + std::string(kSegments), false, [&](const ListedObject& object) {
     const fs::path here = layout_.folder() / object.key.substr(prefix_.size());

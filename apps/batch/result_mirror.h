@@ -27,7 +27,8 @@ class ResultMirror {
   /// Puts what the journal tells of and is not kept yet. Throws Error, also where a file is there
   /// that this run did not make.
   void keep();
-  /// keep(); then removes segments that have been joined from the store. Throws Error.
+  /// keep(); after a run of all parts also removes the segments that it has joined from the store.
+  /// Throws Error.
   void finish();
 
  private:

@@ -23,6 +23,7 @@ EVERYTHING = os.environ.get("VANTAGE_TEST_ALL", "0") not in ("", "0")
 FILMS, LARGE_FRAMES, PAIRS, WORKERS, KILLS = (500, 300, 100, 8, 60) if EVERYTHING else (4, 12, 6, 3, 6)
 OPTIONS = ["--preset", "realtime", "--save", "disparity,preview", "--format", "png", "--no-tuning",
            "--chunk-frames", "4", "--threads", "1"]
+QUALITY = ["quality" if word == "realtime" else word for word in OPTIONS]
 BATCH = [*OPTIONS, "--job-time", "1s", "--lease", "3s", "--quiet"]
 VANTAGE = None
 
@@ -147,6 +148,29 @@ class Batches(unittest.TestCase):
             self.assertEqual(ended.returncode, 3, ended.stderr)
             self.assertIn("000005.png", ended.stderr)
             self.assertIn("has changed", ended.stderr)
+
+    def test_parts_of_a_film_keep_what_others_made(self):
+        frames = sorted((self.folder / "clip" / "left").glob("*.png"))
+        with ObjectServer(page_keys=1000) as server:
+            for side in ("left", "right"):
+                for number in range(400):
+                    frame = self.folder / "clip" / side / frames[number % len(frames)].name
+                    server.put(f"many/{side}/{number:06}.png", frame.read_bytes())
+            server.put("manifest.csv", b"output,left,right,video,disparities\n"
+                       b"film,many/left,many/right,preview,0:9\n")
+            ended = run("batch", "s3://data/manifest.csv", "-o", "s3://data/out", *QUALITY, "--job-time", 1,
+                        env={**os.environ, **server.environment()})
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+            if "out/.vantage/batch/done/merge-000000.json" not in server.buckets["data"]:
+                self.skipTest("this machine is too fast for the film to be divided")
+            asked = [(method, path) for method, path, _ in server.requests]
+            joining = asked.index(("PUT", "/data/out/.vantage/batch/leases/merge-000000/000001"))
+            chunks = [(at > joining, method) for at, (method, path) in enumerate(asked)
+                      if "/segments/preview/" in path and method in ("PUT", "DELETE")]
+            self.assertEqual(chunks, [(False, "PUT")] * 100 + [(True, "DELETE")] * 100)
+            ended = run("batch", self.manifest, "-o", "s3://data/out", "--worker",
+                        env={**os.environ, **server.environment()})
+            self.assertIn("of another manifest", ended.stderr)
 
     def test_an_object_of_others_stays(self):
         with ObjectServer(page_keys=1000) as server:
