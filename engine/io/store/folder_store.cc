@@ -89,7 +89,8 @@ void FolderStore::list(const std::string& prefix, bool one_level,
   for (fs::recursive_directory_iterator entry(begin, error), end; !error && entry != end;
        entry.increment(error)) {
     std::string key = entry->path().lexically_relative(folder_).generic_string();
-    const bool is_folder = entry->is_directory(error);
+    std::error_code gone;  // other processes rename and remove files meanwhile
+    const bool is_folder = entry->is_directory(gone);
     key += is_folder ? "/" : "";
     if (one_level && is_folder) {
       entry.disable_recursion_pending();
@@ -99,6 +100,9 @@ void FolderStore::list(const std::string& prefix, bool one_level,
         !final_name_of(entry->path().filename().string())) {
       found.push_back({key, *info, is_folder});
     }
+  }
+  if (error && error != std::errc::no_such_file_or_directory) {
+    throw Error(fmt::format("cannot read the folder {}: {}", begin.string(), error.message()));
   }
   std::ranges::sort(found, {}, &ListedObject::key);
   (void)std::ranges::all_of(found, visit);
